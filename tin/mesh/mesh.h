@@ -1,0 +1,116 @@
+// The triangle mesh: flat arrays of triangles and vertices, 32-bit links, one infinite vertex for the hull.
+//
+// A mesh of dimension 2 tiles the whole sphere: each hull edge bears an infinite triangle, so every triangle has
+// three neighbours. Meshes of fewer dimensions (no, one, two or only collinear vertices) have no triangles; their
+// vertices stand in a line, ordered by x, then y. The mesh knows links, not geometry: what is Delaunay is
+// decided in delaunay/ and removal/.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tin/base/check.h"
+#include "tin/base/strong_id.h"
+#include "tin/exact/point.h"
+
+namespace tin::mesh {
+
+/// Where a vertex is stored. Slots are used again after removals; terrain::VertexId is the name that lasts.
+using VertexSlot = base::StrongId<struct VertexSlotTag, std::uint32_t>;
+using TriangleSlot = base::StrongId<struct TriangleSlotTag, std::uint32_t>;
+
+/// The infinite vertex; finite vertices have slots from 1.
+inline constexpr VertexSlot kInfinite{0};
+inline constexpr std::uint32_t kNone = 0xffffffffU;
+
+constexpr int next3(int i) { return i == 2 ? 0 : i + 1; }
+constexpr int prev3(int i) { return i == 0 ? 2 : i - 1; }
+
+/// An edge as seen from one of its triangles: the edge opposite to that triangle's vertex `index`, running
+/// counter-clockwise, from vertex next3(index) to vertex prev3(index).
+class HalfEdge {
+ public:
+  constexpr HalfEdge() = default;
+  constexpr HalfEdge(TriangleSlot triangle, int index)
+      : bits_(triangle.value() << 2 | static_cast<std::uint32_t>(index)) {}
+  constexpr TriangleSlot triangle() const { return TriangleSlot(bits_ >> 2); }
+  constexpr int index() const { return static_cast<int>(bits_ & 3U); }
+  friend constexpr bool operator==(HalfEdge, HalfEdge) = default;
+
+ private:
+  std::uint32_t bits_ = kNone;
+};
+
+/// Vertices counter-clockwise; neighbours[i] is the other side of the edge opposite to vertex i.
+struct Triangle {
+  std::array<VertexSlot, 3> vertices;
+  std::array<HalfEdge, 3> neighbours;
+};
+
+class Mesh {
+ public:
+  Mesh();
+
+  // Reading ---------------------------------------------------------------------------------------------------
+
+  /// -1 without vertices, 0 with one, 1 when all are collinear, else 2.
+  int dimension() const;
+  std::size_t vertex_count() const { return vertex_count_; }
+  std::size_t finite_triangle_count() const;
+  /// One past the largest slots in use: the arrays to iterate over, asking is_alive() of each.
+  std::uint32_t vertex_slots() const { return static_cast<std::uint32_t>(points_.size()); }
+  std::uint32_t triangle_slots() const { return static_cast<std::uint32_t>(triangles_.size()); }
+
+  bool is_alive(VertexSlot v) const { return v.value() < star_.size() && star_[v.value()] != kDead; }
+  bool is_alive(TriangleSlot t) const { return triangles_[t.value()].vertices[0].value() != kNone; }
+  bool is_infinite(TriangleSlot t) const;
+
+  exact::Point point(VertexSlot v) const { return points_[v.value()]; }
+  const Triangle& triangle(TriangleSlot t) const { return triangles_[t.value()]; }
+  VertexSlot vertex(TriangleSlot t, int i) const { return triangle(t).vertices[static_cast<std::size_t>(i)]; }
+  HalfEdge twin(HalfEdge e) const { return twin(e.triangle(), e.index()); }
+  HalfEdge twin(TriangleSlot t, int i) const { return triangle(t).neighbours[static_cast<std::size_t>(i)]; }
+  VertexSlot origin(HalfEdge e) const { return vertex(e.triangle(), next3(e.index())); }
+  VertexSlot destination(HalfEdge e) const { return vertex(e.triangle(), prev3(e.index())); }
+  VertexSlot apex(HalfEdge e) const { return vertex(e.triangle(), e.index()); }
+  /// A triangle at `v`. Requires: dimension() == 2; v alive or kInfinite.
+  TriangleSlot triangle_at(VertexSlot v) const { return TriangleSlot(star_[v.value()]); }
+  /// Index of `v` in `t`. Requires: it is there.
+  int index_of(TriangleSlot t, VertexSlot v) const;
+
+  /// The link of `v`, counter-clockwise: for each triangle of its star the edge opposite to `v`. Requires dimension() == 2.
+  void link(VertexSlot v, std::vector<HalfEdge>& out) const;
+
+  /// The vertices in order when dimension() < 2.
+  std::span<const VertexSlot> line() const { return line_; }
+
+  // Writing: building blocks for delaunay/ and removal/, which keep the invariants --------------------------------
+
+  VertexSlot add_vertex(exact::Point p);
+  void release_vertex(VertexSlot v);
+  TriangleSlot add_triangle(VertexSlot a, VertexSlot b, VertexSlot c);
+  void set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, VertexSlot c);
+  void release_triangle(TriangleSlot t);
+  void join(HalfEdge a, HalfEdge b);
+  void set_triangle_at(VertexSlot v, TriangleSlot t) { star_[v.value()] = t.value(); }
+  std::vector<VertexSlot>& mutable_line() { return line_; }
+  void clear_triangles();
+  void reserve(std::size_t vertices);
+
+ private:
+  static constexpr std::uint32_t kDead = kNone;
+  static constexpr std::uint32_t kNoTriangle = kNone - 1;
+
+  std::vector<exact::Point> points_;
+  std::vector<std::uint32_t> star_;  // a triangle at each vertex; kDead in free slots
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> free_vertices_;
+  std::vector<std::uint32_t> free_triangles_;
+  std::vector<VertexSlot> line_;
+  std::size_t vertex_count_ = 0;
+};
+
+}  // namespace tin::mesh

@@ -1,0 +1,61 @@
+// Edits as people ask for them, and changes as the journal keeps them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "tin/base/strong_id.h"
+#include "tin/exact/point.h"
+
+namespace tin::terrain {
+
+/// A vertex's stable id: never used again after its removal; a revert brings it back. Starts at 1.
+using VertexId = base::StrongId<struct VertexIdTag, std::uint64_t>;
+
+/// What to do when a vertex is inserted where one stands already.
+enum class Duplicates { kReplace, kKeep, kMean, kMax, kMin, kReject };
+
+struct Insert {
+  exact::Point at;
+  double z = 0;
+};
+struct Remove {
+  VertexId id;
+};
+struct Move {
+  VertexId id;
+  exact::Point to;
+};
+struct SetZ {
+  VertexId id;
+  double z = 0;
+};
+using Edit = std::variant<Insert, Remove, Move, SetZ>;
+
+/// A vertex without its id.
+struct Placement {
+  exact::Point at;
+  double z = 0;
+  friend bool operator==(const Placement&, const Placement&) = default;
+};
+
+/// One primitive set operation: nothing before means inserted, nothing after means removed, both mean changed.
+struct Step {
+  VertexId id;
+  std::optional<Placement> before;
+  std::optional<Placement> after;
+  friend bool operator==(const Step&, const Step&) = default;
+};
+
+/// What an accepted edit really did, in order: the journal's record and the source of undo.
+struct Change {
+  std::vector<Step> steps;
+  friend bool operator==(const Change&, const Change&) = default;
+
+  /// The change that undoes this one: steps reversed, before and after exchanged.
+  Change inverse() const;
+};
+
+}  // namespace tin::terrain

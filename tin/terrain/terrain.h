@@ -1,0 +1,109 @@
+// A terrain: the canonical Delaunay mesh of a set of vertices, with elevations, stable ids and a frame.
+//
+//   auto terrain = Terrain::build(frame, placements, Duplicates::kReplace);
+//   auto applied = terrain->apply({{Insert{p, 12.5}}, {Remove{VertexId(7)}}}, Duplicates::kReject);
+//   journal(applied->change);            // durable first, then answer
+//   terrain->replay(applied->change.inverse());  // undo: digest as before
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tin/base/progress.h"
+#include "tin/base/result.h"
+#include "tin/delaunay/triangulation.h"
+#include "tin/frame/frame.h"
+#include "tin/terrain/digest.h"
+#include "tin/terrain/edit.h"
+#include "tin/terrain/id_map.h"
+#include "tin/terrain/source_grid.h"
+
+namespace tin::terrain {
+
+/// A vertex as readers see it.
+struct Vertex {
+  VertexId id;
+  exact::Point at;
+  double z = 0;
+};
+
+struct ZRange {
+  double min = 0, max = 0;
+};
+
+struct Box {
+  exact::Point min, max;
+};
+
+class Terrain {
+ public:
+  /// What apply() did: one id per edit (of the vertex inserted, found, removed, moved or set) and the change.
+  struct Applied {
+    std::vector<VertexId> ids;
+    Change change;
+  };
+
+  explicit Terrain(frame::Frame frame) : frame_(std::move(frame)) {}
+
+  /// Builds the terrain of `placements`; ids 1.. are given in their order (duplicates by the policy; the
+  /// first keeps its id). Requires: positions on the lattice.
+  /// Errors: kNotFinite, kOutsideLattice, kDuplicatePosition (policy kReject), kCancelled; `where` is "/i".
+  static base::Result<Terrain> build(frame::Frame frame, std::span<const Placement> placements,
+                                     Duplicates duplicates, base::Progress* progress = nullptr);
+  /// The same with given ids (a checkpoint's): ids must be distinct and positions too, else kMalformed.
+  static base::Result<Terrain> restore(frame::Frame frame, std::span<const Vertex> vertices, VertexId next_id);
+
+  /// Applies all edits or none, in order; a later edit may name a vertex that an earlier one inserted.
+  /// Errors: kUnknownVertex, kDuplicatePosition, kNotFinite, kOutsideLattice; `where` is "/i" (the edit's index).
+  /// Ensures: on error the terrain is as it was. Cost: expected O(log n) per edit.
+  base::Result<Applied> apply(std::span<const Edit> edits, Duplicates duplicates);
+
+  /// Repeats a recorded change (journal) or an inverse (undo), with the ids it names.
+  /// Errors: kConflict when it does not fit the present set; then nothing is changed.
+  base::Result<void> replay(const Change& change);
+
+  const frame::Frame& frame() const { return frame_; }
+  const delaunay::Triangulation& triangulation() const { return triangulation_; }
+  const mesh::Mesh& mesh() const { return triangulation_.mesh(); }
+
+  std::size_t vertex_count() const { return ids_.size(); }
+  std::size_t triangle_count() const { return mesh().finite_triangle_count(); }
+  std::optional<Vertex> vertex(VertexId id) const;
+  std::optional<mesh::VertexSlot> slot_of(VertexId id) const { return ids_.slot_of(id); }
+  VertexId id_of(mesh::VertexSlot slot) const { return ids_.id_of(slot); }
+  double z(mesh::VertexSlot slot) const { return z_[slot.value()]; }
+  const IdMap& ids() const { return ids_; }
+  /// The id that the next insertion will get.
+  VertexId next_id() const { return next_id_; }
+
+  std::string digest() const { return hash_.digest(frame_); }
+  /// O(n) each; empty terrain: nothing.
+  std::optional<Box> bounds() const;
+  std::optional<ZRange> z_range() const;
+
+  void set_source_grid(std::shared_ptr<const SourceGrid> grid) { source_grid_ = std::move(grid); }
+  const SourceGrid* source_grid() const { return source_grid_.get(); }
+  std::shared_ptr<const SourceGrid> shared_source_grid() const { return source_grid_; }
+
+ private:
+  base::Result<VertexId> apply_one(const Insert& edit, Duplicates duplicates, Change& change);
+  base::Result<VertexId> apply_one(const Remove& edit, Duplicates duplicates, Change& change);
+  base::Result<VertexId> apply_one(const Move& edit, Duplicates duplicates, Change& change);
+  base::Result<VertexId> apply_one(const SetZ& edit, Duplicates duplicates, Change& change);
+  bool take(const Step& step);  // performs one step if it fits
+  void put(mesh::VertexSlot slot, VertexId id, const Placement& placement);
+  void drop(mesh::VertexSlot slot, VertexId id);
+
+  frame::Frame frame_;
+  delaunay::Triangulation triangulation_;
+  std::vector<double> z_;  // by vertex slot, in the frame's vertical unit
+  IdMap ids_;
+  VertexId next_id_{1};
+  VertexSetHash hash_;
+  std::shared_ptr<const SourceGrid> source_grid_;
+};
+
+}  // namespace tin::terrain
