@@ -1,0 +1,60 @@
+// Vertices and triangles of a TIN as RFC 7946 GeoJSON, written piece by piece.
+//
+//   std::string out;
+//   GeoJsonWriter writer(out, Coordinates::kDegrees);
+//   writer.begin({});
+//   for (...) { writer.vertex(id, position); if (out.size() > kChunk) { send(out); out.clear(); } }
+//   writer.end();
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proto/messages.h"
+
+namespace proto::formats {
+
+inline constexpr std::string_view kGeoJsonMediaType = "application/geo+json";
+
+/// How x and y are rounded: degrees to 9 decimals (0.1 mm), projected units to 4. z is written in full.
+enum class Coordinates { kDegrees, kProjected };
+
+/// What stands before the features. Everything may be missing.
+struct CollectionHead {
+  std::optional<std::uint64_t> number_matched;
+  std::optional<std::uint64_t> number_returned;
+  std::vector<Link> links;
+  /// For coordinates other than CRS84: written as the pre-RFC "crs" member, which GDAL and QGIS understand.
+  std::optional<std::string> crs_urn;
+};
+
+/// Appends to a string that the caller may empty between any two calls.
+class GeoJsonWriter {
+ public:
+  GeoJsonWriter(std::string& out, Coordinates coordinates);
+
+  void begin(const CollectionHead& head);
+  /// A Point with the vertex's id as its id. Requires: finite coordinates.
+  void vertex(VertexId id, const Position& at);
+  /// A Polygon of four positions whose id is "a-b-c". Requires: counter-clockwise, ids[i] stands at
+  /// corners[i]. Ensures: the same bytes whichever corner comes first: the smallest id begins.
+  void triangle(const std::array<VertexId, 3>& ids, const std::array<Position, 3>& corners);
+  void end();
+
+ private:
+  void separate();
+  void append_position(const Position& at);
+
+  std::string& out_;
+  int decimals_;
+  bool first_ = true;
+};
+
+/// The id that triangle() writes.
+std::string triangle_id(const std::array<VertexId, 3>& ids);
+
+}  // namespace proto::formats
