@@ -1,0 +1,77 @@
+// Writing and reading the primitives of FORMAT.md. For this folder's .cc files and its tests.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "tin/base/result.h"
+#include "tin/exact/point.h"
+#include "tin/terrain/edit.h"
+
+namespace tin::codec {
+
+/// A position on the lattice with a finite z: the only kind that is written and the only kind that is read.
+bool storable(const terrain::Placement& placement);
+
+/// Appends primitives to a string.
+class Writer {
+ public:
+  /// Starts with magic and version.
+  Writer(std::string_view magic, std::uint16_t version);
+
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
+  void u8(std::uint8_t value) { bytes_.push_back(static_cast<char>(value)); }
+  void f64(double value);
+  void varint(std::uint64_t value);
+  void zigzag(std::int64_t value);
+  void text(std::string_view value);
+  /// `at` and z. Requires: storable(placement).
+  void placement(const terrain::Placement& placement);
+  /// Appends the checksum and hands the string out.
+  std::string finish();
+
+ private:
+  void fixed(std::uint64_t value, int bytes);
+
+  std::string bytes_;
+  exact::Point previous_;
+};
+
+/// Takes primitives off a string. After the first failure every read gives zeros and remaining() is 0, so
+/// that callers may read on and ask ok() where a loop or an allocation depends on it.
+class Reader {
+ public:
+  /// Checks magic, version and checksum of `bytes`, which must outlive the reader.
+  Reader(std::string_view bytes, std::string_view magic, std::uint16_t newest_version, std::string_view what);
+
+  bool ok() const { return failure_.message.empty(); }
+  /// Bytes left before the checksum: bounds every count that is believed.
+  std::size_t remaining() const { return bytes_.size(); }
+  const base::Error& error() const { return failure_; }
+
+  std::uint8_t u8();
+  double f64();
+  std::uint64_t varint();
+  std::int64_t zigzag();
+  std::string text();
+  terrain::Placement placement();
+  /// A varint that says how many items of at least `bytes_each` follow.
+  std::size_t count(std::size_t bytes_each);
+
+  /// Fails with "<what>: <problem>" unless `holds`, or unless something failed before.
+  void require(bool holds, std::string_view problem);
+  /// Fails unless everything was read.
+  void finish() { require(remaining() == 0, "bytes are left over"); }
+
+ private:
+  void fail(base::Code code, std::string_view problem);
+  std::uint64_t fixed(int bytes);
+
+  std::string_view bytes_;
+  std::string_view what_;
+  base::Error failure_;
+  exact::Point previous_;
+};
+
+}  // namespace tin::codec

@@ -1,0 +1,70 @@
+#include "tin/codec/change.h"
+
+#include <cstdint>
+
+#include "tin/base/check.h"
+#include "tin/codec/bytes_internal.h"
+
+namespace tin::codec {
+namespace {
+
+constexpr std::string_view kMagic = "TNSJ";
+constexpr std::uint16_t kVersion = 1;
+constexpr std::uint8_t kBefore = 1;
+constexpr std::uint8_t kAfter = 2;
+constexpr std::size_t kSmallestStep = 1 + 1 + (1 + 1 + 8);  // parts, id, one placement
+
+// Ids differ modulo 2^64: as a signed number the short way round, without overflow.
+std::int64_t difference(std::uint64_t to, std::uint64_t from) {
+  return static_cast<std::int64_t>(to - from);
+}
+
+void write_step(Writer& out, const terrain::Step& step, std::uint64_t previous_id) {
+  TIN_CHECK(step.id.value() != 0 && (step.before || step.after));
+  out.u8(static_cast<std::uint8_t>((step.before ? kBefore : 0) | (step.after ? kAfter : 0)));
+  out.zigzag(difference(step.id.value(), previous_id));
+  if (step.before) out.placement(*step.before);
+  if (step.after) out.placement(*step.after);
+}
+
+terrain::Step read_step(Reader& in, std::uint64_t previous_id) {
+  terrain::Step step;
+  const std::uint8_t parts = in.u8();
+  in.require(parts >= 1 && parts <= (kBefore | kAfter), "a step of an unknown kind");
+  step.id = terrain::VertexId(previous_id + static_cast<std::uint64_t>(in.zigzag()));
+  in.require(step.id.value() != 0, "a vertex id is 0");
+  if ((parts & kBefore) != 0) step.before = in.placement();
+  if ((parts & kAfter) != 0) step.after = in.placement();
+  return step;
+}
+
+}  // namespace
+
+std::string encode_change(const terrain::Change& change) {
+  Writer out(kMagic, kVersion);
+  out.reserve(32 + 2 * kSmallestStep * change.steps.size());
+  out.varint(change.steps.size());
+  std::uint64_t previous_id = 0;
+  for (const terrain::Step& step : change.steps) {
+    write_step(out, step, previous_id);
+    previous_id = step.id.value();
+  }
+  return out.finish();
+}
+
+base::Result<terrain::Change> decode_change(std::string_view bytes) {
+  Reader in(bytes, kMagic, kVersion, "journal record");
+  terrain::Change change;
+  const std::size_t count = in.count(kSmallestStep);
+  change.steps.reserve(count);
+  std::uint64_t previous_id = 0;
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    change.steps.push_back(read_step(in, previous_id));
+    previous_id = change.steps.back().id.value();
+  }
+  in.finish();
+  if (!in.ok()) return in.error();
+  return change;
+}
+
+}  // namespace tin::codec

@@ -1,0 +1,44 @@
+// Checkpoints: the bytes of a whole terrain at one revision. Specified in FORMAT.md.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tin/base/result.h"
+#include "tin/frame/frame.h"
+#include "tin/terrain/edit.h"
+#include "tin/terrain/source_grid.h"
+#include "tin/terrain/terrain.h"
+
+namespace tin::codec {
+
+/// The most pixels that the mask of a source grid may have; larger rasters must be refused on import.
+inline constexpr std::int64_t kMaxGridPixels = std::int64_t{1} << 30;
+
+/// All that brings a terrain back: Terrain::restore(frame, vertices, next_id), then set_source_grid(grid).
+struct Checkpoint {
+  std::uint64_t revision = 0;
+  std::string digest;  // of the terrain that this is the state of
+  terrain::VertexId next_id{1};
+  terrain::Duplicates duplicates = terrain::Duplicates::kReplace;
+  frame::Frame frame;
+  std::vector<terrain::Vertex> vertices;  // by ascending id
+  std::shared_ptr<const terrain::SourceGrid> grid;
+};
+
+/// Requires: what FORMAT.md demands of a checkpoint (ids ascend and are less than next_id, positions and grid
+/// on the lattice, finite numbers, at most kMaxGridPixels).
+std::string encode_checkpoint(const Checkpoint& checkpoint);
+
+/// The checkpoint of `bytes`, which may be anything. Whether the digest is that of the vertices, and whether
+/// two vertices share a position, is for the caller to see when it builds the terrain.
+///
+/// Ensures: what encode_checkpoint requires; encode_checkpoint(result) == bytes.
+/// Errors:  kMalformed; kUnsupported when written by a newer version.
+/// Cost:    linear; allocates at most a small multiple of bytes.size(), and 128 MiB for the grid's mask.
+base::Result<Checkpoint> decode_checkpoint(std::string_view bytes);
+
+}  // namespace tin::codec
