@@ -17,8 +17,8 @@ namespace tin::frame {
 /// One axis: world = origin + i * (unit / parts). A DEM's axis has the pixel size as its unit, so that pixel
 /// centres are exact multiples of `parts`; a survey's has unit 1 and, say, 1000 parts.
 struct Axis {
-  double origin = 0;        // world coordinate of lattice 0
-  double unit = 1;          // world units, > 0
+  double origin = 0;          // world coordinate of lattice 0
+  double unit = 1;            // world units, > 0
   std::int64_t parts = 1000;  // lattice steps per unit, > 0
 
   double step() const { return unit / static_cast<double>(parts); }
@@ -29,10 +29,10 @@ struct Axis {
   friend bool operator==(const Axis&, const Axis&) = default;
 };
 
-/// CRS, axes and vertical unit of a terrain. x is easting or longitude, y northing or latitude, always in that
-/// order ("GIS order"), whatever the authority of the CRS says.
+/// CRS, axes and vertical unit of a terrain. x is easting or longitude, y northing or latitude, always in
+/// that order ("GIS order"), whatever the authority of the CRS says.
 struct Frame {
-  std::string crs;            // "EPSG:4326" where an authority code is known, else WKT2; empty: unknown (local)
+  std::string crs;  // "EPSG:4326" where an authority code is known, else WKT2; empty: unknown (local)
   Axis x;
   Axis y;
   std::string vertical_unit = "metre";  // name as users know it: metre, foot, US survey foot
@@ -49,7 +49,8 @@ struct GroundScale {
   double unit_m = 1;  // projected: metres per CRS unit; geographic: unused
 };
 
-/// Metres on the ellipsoid (WGS84) of one degree of longitude and of latitude around `latitude_deg`.
+/// Metres on the ellipsoid (WGS84) of one degree of longitude and of latitude around `latitude_deg`, which is
+/// taken as +-89 degrees nearer to the poles, where a degree of longitude would have no length.
 struct DegreeLengths {
   double lon_m = 0;
   double lat_m = 0;
@@ -61,17 +62,30 @@ struct Extent {
   double min_x = 0, min_y = 0, max_x = 0, max_y = 0;
 };
 
-/// Axes for scattered points: about 1 mm on the ground (or the given resolution in CRS units, 0 = choose), equal
-/// on the ground in x and y, centred on the extent, coarser if the extent does not fit into half the lattice.
-/// Errors: kInvalidValue when a given resolution cannot hold the extent or is not positive.
+/// Axes for scattered points. The step is the power of ten of the CRS unit nearest below 1 mm on the ground
+/// (1e-8 degrees for geographic CRSs), or the given resolution in CRS units (0: choose); equal on the ground
+/// in x and y where it is chosen. The lattice is centred on the extent (at a rounded position, so that
+/// decimal coordinates stay decimal), and a chosen step is 2, 5, 10 ... times coarser where the extent would
+/// not fit into half the lattice. Errors: kNotFinite; kInvalidValue when a given resolution is negative,
+/// one-sided or cannot hold the extent, when latitudes leave -90..90, or when the coordinates are too large
+/// for doubles to tell the steps apart.
 base::Result<Frame> fit_points(const Extent& extent, const GroundScale& scale, double resolution_x,
                                double resolution_y);
 
-/// Axes for a raster of `width` x `height` pixels of the given size (> 0) whose centre of pixel (0, 0), the upper
-/// left one, is at (x0, y0): each pixel is divided into a whole number of parts, about 1 mm on the ground and
-/// equal on the ground in x and y, so that pixel centres are lattice points exactly. Lattice 0 is the centre of pixel
-/// (width / 2, height / 2). Errors: kInvalidValue.
-base::Result<Frame> fit_raster(double x0, double y0, double pixel_x, double pixel_y, std::int64_t width,
-                               std::int64_t height, const GroundScale& scale);
+/// A raster of `width` x `height` pixels of the given size in CRS units (> 0), north-up; the centre of pixel
+/// (0, 0), the upper left one, is at (x0, y0).
+struct RasterShape {
+  double x0 = 0, y0 = 0;
+  double pixel_x = 0, pixel_y = 0;
+  std::int64_t width = 0, height = 0;
+};
+
+/// Axes for a raster: each pixel is divided into a whole number of parts, about 1 mm on the ground and equal
+/// on the ground in x and y (or about the given resolution in CRS units), so that pixel centres are lattice
+/// points exactly; whole factors coarser where the raster would not fit into half the lattice. Lattice 0 is
+/// the centre of pixel (width / 2, height / 2). Errors: as fit_points(); kInvalidValue also for a raster that
+/// no lattice can hold.
+base::Result<Frame> fit_raster(const RasterShape& raster, const GroundScale& scale, double resolution_x = 0,
+                               double resolution_y = 0);
 
 }  // namespace tin::frame
