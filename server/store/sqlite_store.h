@@ -1,0 +1,28 @@
+// The store in one SQLite file: nothing to install or to start. WAL with synchronous=FULL, since NORMAL loses
+// acknowledged commits when the power fails.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "server/store/store.h"
+#include "tin/base/result.h"
+
+namespace server::store {
+
+struct SqliteOptions {
+  /// The most that the database file may grow to, rounded up to pages; past it writes fail with kDiskFull. 0:
+  /// no bound but the disk's.
+  std::int64_t max_file_bytes = 0;
+};
+
+/// Opens or creates the store of `folder`: tinsmith.sqlite3 with SQLite's files beside it, and the file
+/// "lock". The folder is made if its parent is there.
+///
+/// Errors: kConflict when the folder is open already, here or in another process; kUnsupported when a newer
+///         version wrote it, or it is no store of ours; kStorage.
+tin::base::Result<std::unique_ptr<Store>> open_sqlite_store(const std::filesystem::path& folder,
+                                                            const SqliteOptions& options = {});
+
+}  // namespace server::store
