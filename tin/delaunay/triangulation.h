@@ -44,7 +44,7 @@ class Triangulation {
   /// Inserts `p` anywhere: inside, on an edge, outside the hull, into a mesh of any dimension.
   /// Requires: p on the lattice. Cost: location, then expected O(1) on random input; the star's size at worst.
   Inserted insert(exact::Point p);
-  /// The same, starting the walk at a vertex that is likely near.
+  /// The same, starting the walk at an alive vertex that is likely near.
   Inserted insert_near(exact::Point p, mesh::VertexSlot hint);
 
   /// Removes `v` by the ear queue. Requires: v alive. Cost: O(k log k) for degree k.
@@ -64,21 +64,22 @@ class Triangulation {
   std::span<const mesh::TriangleSlot> fresh_triangles() const { return fresh_; }
 
  private:
-  Inserted insert_at(exact::Point p, const Location& where);
-  void insert_in_line(mesh::VertexSlot v);
+  Inserted insert_located(exact::Point p, const Location& where);
+  Inserted insert_below_plane(exact::Point p);
   void raise_to_plane(mesh::VertexSlot apex);
-  void fill_cavity(mesh::VertexSlot v, mesh::TriangleSlot first);
+  void drop_to_line(mesh::VertexSlot gone);
+  bool in_conflict(mesh::TriangleSlot t, exact::Point p) const;
+  void find_cavity(exact::Point p, mesh::TriangleSlot first);
+  void fill_cavity(mesh::VertexSlot v);
+  Location classify(exact::Point p, mesh::TriangleSlot t) const;
 
   mesh::Mesh mesh_;
   StartGrid starts_;
   removal::EarQueue ears_;
   std::vector<mesh::TriangleSlot> fresh_;
-  struct Scratch {
-    std::vector<mesh::HalfEdge> boundary;
-    std::vector<mesh::HalfEdge> stack;
-    std::vector<mesh::TriangleSlot> dead;
-    std::vector<mesh::HalfEdge> link;
-  } scratch_;
+  std::vector<mesh::TriangleSlot> cavity_;     // triangles in conflict with the new point
+  std::vector<mesh::HalfEdge> cavity_edge_;    // around them, counter-clockwise, seen from outside
+  std::vector<mesh::HalfEdge> to_cross_;
 };
 
 }  // namespace tin::delaunay
