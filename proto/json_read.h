@@ -51,8 +51,8 @@ class Document {
     kObject
   };
   struct Slice {
-    std::uint32_t offset = 0;
-    std::uint32_t length = 0;
+    std::uint32_t offset;
+    std::uint32_t length;
   };
   union Content {
     std::uint64_t unsigned_integer = 0;
@@ -64,7 +64,7 @@ class Document {
   struct Node {
     Kind kind = Kind::kNull;
     std::uint32_t end = 0;  // index of the node after this one and all that is in it
-    Slice name;             // of a member
+    Slice name{};           // of a member
     Content content;
   };
 
@@ -118,10 +118,11 @@ class Object {
 /// One value of a document, which must outlive it.
 class Value {
  public:
+  bool is_array() const { return node().kind == Document::Kind::kArray; }
   tin::base::Result<bool> boolean() const;
   /// A finite number.
   tin::base::Result<double> number() const;
-  /// A whole number within [min, max], both within +-2^53; 3.0 is one, 3.5 is not.
+  /// A whole number within [min, max]; 3.0 is one, 3.5 is not. Requires: max >= 0.
   tin::base::Result<std::int64_t> integer(std::int64_t min, std::int64_t max) const;
   tin::base::Result<std::string_view> string(std::size_t max_bytes) const;
   tin::base::Result<Array> array(std::size_t max_items) const;

@@ -1,0 +1,104 @@
+#include "proto/formats/geojson.h"
+
+#include "proto/json_write.h"
+#include "proto/messages_internal.h"
+#include "proto/numbers.h"
+
+namespace proto::formats {
+namespace {
+
+constexpr int kDegreeDecimals = 9;
+constexpr int kProjectedDecimals = 4;
+
+/// Index of the smallest id: where a triangle's description begins.
+std::size_t first_corner(const std::array<VertexId, 3>& ids) {
+  if (ids[0] < ids[1]) return ids[0] < ids[2] ? 0 : 2;
+  return ids[1] < ids[2] ? 1 : 2;
+}
+
+std::array<VertexId, 3> rotated(const std::array<VertexId, 3>& ids) {
+  const std::size_t first = first_corner(ids);
+  return {ids[first], ids[(first + 1) % 3], ids[(first + 2) % 3]};
+}
+
+void append_ids(std::string& out, const std::array<VertexId, 3>& ids, char separator) {
+  append_integer(out, ids[0].value());
+  out += separator;
+  append_integer(out, ids[1].value());
+  out += separator;
+  append_integer(out, ids[2].value());
+}
+
+}  // namespace
+
+std::string triangle_id(const std::array<VertexId, 3>& ids) {
+  std::string id;
+  append_ids(id, rotated(ids), '-');
+  return id;
+}
+
+GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates)
+    : out_(out), decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals) {}
+
+void GeoJsonWriter::begin(const CollectionHead& head) {
+  JsonWriter json;
+  json.begin_object().key("type").string("FeatureCollection");
+  if (head.crs_urn) {
+    json.key("crs").begin_object().key("type").string("name");
+    json.key("properties").begin_object().key("name").string(*head.crs_urn).end_object().end_object();
+  }
+  if (head.number_matched) json.key("numberMatched").integer(*head.number_matched);
+  if (head.number_returned) json.key("numberReturned").integer(*head.number_returned);
+  if (!head.links.empty()) write_links(json, head.links);
+  json.key("features").begin_array();
+  out_ += json.take();
+  first_ = true;
+}
+
+void GeoJsonWriter::vertex(VertexId id, const Position& at) {
+  separate();
+  out_ += R"({"type":"Feature","id":)";
+  append_integer(out_, id.value());
+  out_ += R"(,"geometry":{"type":"Point","coordinates":)";
+  append_position(at);
+  out_ += R"(},"properties":{"z":)";
+  append_shortest(out_, at.z);
+  out_ += "}}";
+}
+
+void GeoJsonWriter::triangle(const std::array<VertexId, 3>& ids, const std::array<Position, 3>& corners) {
+  const std::size_t first = first_corner(ids);
+  const std::array<VertexId, 3> ordered = rotated(ids);
+  separate();
+  out_ += R"({"type":"Feature","id":")";
+  append_ids(out_, ordered, '-');
+  out_ += R"(","geometry":{"type":"Polygon","coordinates":[[)";
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i > 0) out_ += ',';
+    append_position(corners[(first + i) % 3]);
+  }
+  out_ += R"(]]},"properties":{"vertices":[)";
+  append_ids(out_, ordered, ',');
+  out_ += "]}}";
+}
+
+void GeoJsonWriter::end() {
+  out_ += "\n]}\n";
+}
+
+void GeoJsonWriter::separate() {
+  out_ += first_ ? "\n" : ",\n";
+  first_ = false;
+}
+
+void GeoJsonWriter::append_position(const Position& at) {
+  out_ += '[';
+  append_rounded(out_, at.x, decimals_);
+  out_ += ',';
+  append_rounded(out_, at.y, decimals_);
+  out_ += ',';
+  append_shortest(out_, at.z);
+  out_ += ']';
+}
+
+}  // namespace proto::formats

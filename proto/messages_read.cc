@@ -1,0 +1,354 @@
+#include <algorithm>
+#include <limits>
+
+#include "proto/crs_uri.h"
+#include "proto/json_read.h"
+#include "proto/messages.h"
+#include "proto/utf8.h"
+
+namespace proto {
+
+using tin::base::Code;
+using tin::base::error;
+using tin::base::Result;
+using tin::terrain::Duplicates;
+
+namespace {
+
+constexpr std::size_t kMaxTinId = 64;
+constexpr std::size_t kMaxTitle = 512;
+constexpr std::size_t kMaxCrsName = 256;
+constexpr std::size_t kMaxWord = 256;
+constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // ids are exact in every JSON reader up to here
+
+bool is_alphanumeric(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+
+/// Reads the members of one object; after the first error everything else is skipped and the error stays.
+class Members {
+ public:
+  explicit Members(const Object& object) : object_(object) {}
+
+  double number(std::string_view name) {
+    return take<double>(name, [](Value value) { return value.number(); });
+  }
+  VertexId id(std::string_view name) {
+    const auto read = [](Value value) { return value.integer(1, kMaxId); };
+    return VertexId(static_cast<std::uint64_t>(take<std::int64_t>(name, read)));
+  }
+  Result<void> done() { return failed_ ? Result<void>(std::move(error_)) : Result<void>(); }
+
+ private:
+  template <class T, class Read>
+  T take(std::string_view name, Read read) {
+    if (failed_) return {};
+    auto member = object_.require(name);
+    if (!member) return fail<T>(std::move(member).error());
+    auto value = read(*member);
+    if (!value) return fail<T>(std::move(value).error());
+    return *value;
+  }
+
+  template <class T>
+  T fail(tin::base::Error error) {
+    failed_ = true;
+    error_ = std::move(error);
+    return {};
+  }
+
+  const Object& object_;
+  bool failed_ = false;
+  tin::base::Error error_;
+};
+
+/// An array of exactly N numbers.
+template <std::size_t N>
+Result<std::array<double, N>> read_numbers(Value value) {
+  auto array = value.array(std::numeric_limits<std::size_t>::max());
+  if (!array) return std::move(array).error();
+  if (array->size() != N) {
+    return value.error(Code::kMalformed, "here must be " + std::to_string(N) + " numbers, not " +
+                                             std::to_string(array->size()));
+  }
+  std::array<double, N> numbers{};
+  std::size_t i = 0;
+  for (const Value item : *array) {
+    auto number = item.number();
+    if (!number) return std::move(number).error();
+    numbers[i++] = *number;
+  }
+  return numbers;
+}
+
+Result<std::optional<std::string>> read_tin_id(const Object& object, std::string_view name) {
+  const auto member = object.find(name);
+  if (!member) return std::optional<std::string>();
+  auto text = member->string(std::numeric_limits<std::size_t>::max());
+  if (!text) return std::move(text).error();
+  if (is_tin_id(*text)) return std::optional(std::string(*text));
+  return member->error(Code::kInvalidValue,
+                       "an id has 1 to 64 letters, digits, - and _, and begins with a letter or digit");
+}
+
+Result<std::optional<std::string>> read_crs(const Object& object) {
+  const auto member = object.find("crs");
+  if (!member) return std::optional<std::string>();
+  auto text = member->string(kMaxCrsName);
+  if (!text) return std::move(text).error();
+  auto name = parse_crs(*text, member->pointer());
+  if (!name) return std::move(name).error();
+  return std::optional(std::move(*name));
+}
+
+Result<std::optional<std::string>> read_title(const Object& object) {
+  const auto member = object.find("title");
+  if (!member) return std::optional<std::string>();
+  auto text = member->string(kMaxTitle);
+  if (!text) return std::move(text).error();
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (std::any_of(text->begin(), text->end(), is_control)) {
+    return member->error(Code::kInvalidValue, "a title has no control characters");
+  }
+  return std::optional(std::string(*text));
+}
+
+/// One number for both axes, or [x, y].
+Result<std::array<double, 2>> read_resolution(Value value) {
+  std::array<double, 2> steps{};
+  if (value.is_array()) {
+    auto pair = read_numbers<2>(value);
+    if (!pair) return std::move(pair).error();
+    steps = *pair;
+  } else {
+    auto step = value.number();
+    if (!step) return std::move(step).error();
+    steps = {*step, *step};
+  }
+  if (steps[0] > 0 && steps[1] > 0) return steps;
+  return value.error(Code::kInvalidValue, "a resolution must be greater than 0");
+}
+
+Result<std::vector<Position>> read_vertices(Value value, std::size_t max_vertices) {
+  auto array = value.array(max_vertices);
+  if (!array) return std::move(array).error();
+  std::vector<Position> vertices;
+  vertices.reserve(array->size());
+  for (const Value item : *array) {
+    auto numbers = read_numbers<3>(item);
+    if (!numbers) return std::move(numbers).error();
+    vertices.push_back({(*numbers)[0], (*numbers)[1], (*numbers)[2]});
+  }
+  return vertices;
+}
+
+Result<void> read_create_placing(const Object& object, CreateTin& create) {
+  if (const auto member = object.find("resolution")) {
+    auto resolution = read_resolution(*member);
+    if (!resolution) return std::move(resolution).error();
+    create.resolution = *resolution;
+  }
+  if (const auto member = object.find("origin")) {
+    auto origin = read_numbers<2>(*member);
+    if (!origin) return std::move(origin).error();
+    create.origin = Position2{(*origin)[0], (*origin)[1]};
+  }
+  if (const auto member = object.find("duplicates")) {
+    auto text = member->string(kMaxWord);
+    if (!text) return std::move(text).error();
+    auto duplicates = parse_duplicates(*text, member->pointer());
+    if (!duplicates) return std::move(duplicates).error();
+    create.duplicates = *duplicates;
+  }
+  return {};
+}
+
+Result<EditOp> read_op_named(std::string_view op, Value op_name, Value value) {
+  const auto read = [&](std::initializer_list<std::string_view> names, auto make) -> Result<EditOp> {
+    auto object = value.object(names);
+    if (!object) return std::move(object).error();
+    Members members(*object);
+    EditOp made = make(members);
+    if (auto done = members.done(); !done) return std::move(done).error();
+    return made;
+  };
+  // Braces fix the order of evaluation: the first wrong member is the one that is named.
+  if (op == "insert") {
+    return read({"op", "x", "y", "z"}, [](Members& m) -> EditOp {
+      return InsertOp{m.number("x"), m.number("y"), m.number("z")};
+    });
+  }
+  if (op == "remove") {
+    return read({"op", "id"}, [](Members& m) -> EditOp { return RemoveOp{m.id("id")}; });
+  }
+  if (op == "move") {
+    return read({"op", "id", "x", "y"}, [](Members& m) -> EditOp {
+      return MoveOp{m.id("id"), m.number("x"), m.number("y")};
+    });
+  }
+  if (op == "set-z") {
+    return read({"op", "id", "z"}, [](Members& m) -> EditOp { return SetZOp{m.id("id"), m.number("z")}; });
+  }
+  return op_name.error(Code::kInvalidValue, "there is no op \"" + utf8_prefix(op, 32) +
+                                                "\"; there are insert, remove, move and set-z");
+}
+
+Result<EditOp> read_op(Value value) {
+  auto object = value.any_object();
+  if (!object) return std::move(object).error();
+  auto member = object->require("op");
+  if (!member) return std::move(member).error();
+  auto name = member->string(kMaxWord);
+  if (!name) return std::move(name).error();
+  return read_op_named(*name, *member, value);
+}
+
+Result<void> read_simplify_goals(const Object& inputs, SimplifyRequest& request) {
+  if (const auto member = inputs.find("tolerance")) {
+    auto tolerance = member->number();
+    if (!tolerance) return std::move(tolerance).error();
+    if (*tolerance < 0) return member->error(Code::kInvalidValue, "a tolerance must not be negative");
+    request.tolerance = *tolerance;
+  }
+  if (const auto member = inputs.find("maxVertices")) {
+    auto count = member->integer(3, kMaxId);
+    if (!count) return std::move(count).error();
+    request.max_vertices = static_cast<std::uint64_t>(*count);
+  }
+  if (const auto member = inputs.find("effort")) {
+    auto effort = member->string(kMaxWord);
+    if (!effort) return std::move(effort).error();
+    if (*effort != "fast") {
+      return member->error(Code::kInvalidValue, "there is no such effort; there is: fast");
+    }
+  }
+  if (!request.tolerance && !request.max_vertices) {
+    return error(Code::kInvalidValue, "tolerance or maxVertices must be given", "/inputs");
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_tin_id(std::string_view id) {
+  return !id.empty() && id.size() <= kMaxTinId && is_alphanumeric(id.front()) &&
+         std::all_of(id.begin(), id.end(), [](char c) { return is_alphanumeric(c) || c == '_' || c == '-'; });
+}
+
+Result<Duplicates> parse_duplicates(std::string_view text, std::string where) {
+  static constexpr std::pair<std::string_view, Duplicates> kPolicies[] = {
+      {"replace", Duplicates::kReplace}, {"keep", Duplicates::kKeep}, {"mean", Duplicates::kMean},
+      {"max", Duplicates::kMax},         {"min", Duplicates::kMin},   {"reject", Duplicates::kReject},
+  };
+  for (const auto& [name, policy] : kPolicies) {
+    if (text == name) return policy;
+  }
+  return error(Code::kInvalidValue, "duplicates is one of replace, keep, mean, max, min and reject",
+               std::move(where));
+}
+
+Result<Voids> parse_voids(std::string_view text, std::string where) {
+  if (text == "keep") return Voids::kKeep;
+  if (text == "fill") return Voids::kFill;
+  return error(Code::kInvalidValue, "voids is keep or fill", std::move(where));
+}
+
+Result<CreateTin> read_create_tin(std::string_view body, std::size_t max_vertices) {
+  auto document = Document::parse(body);
+  if (!document) return std::move(document).error();
+  auto object =
+      document->root().object({"id", "title", "crs", "resolution", "origin", "duplicates", "vertices"});
+  if (!object) return std::move(object).error();
+  CreateTin create;
+  auto id = read_tin_id(*object, "id");
+  if (!id) return std::move(id).error();
+  create.id = std::move(*id);
+  auto title = read_title(*object);
+  if (!title) return std::move(title).error();
+  create.title = std::move(*title);
+  auto crs = read_crs(*object);
+  if (!crs) return std::move(crs).error();
+  create.crs = std::move(*crs);
+  if (auto placed = read_create_placing(*object, create); !placed) return std::move(placed).error();
+  if (const auto member = object->find("vertices")) {
+    auto vertices = read_vertices(*member, max_vertices);
+    if (!vertices) return std::move(vertices).error();
+    create.vertices = std::move(*vertices);
+  }
+  return create;
+}
+
+Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops) {
+  auto document = Document::parse(body);
+  if (!document) return std::move(document).error();
+  auto object = document->root().object({"ops", "crs"});
+  if (!object) return std::move(object).error();
+  EditRequest request;
+  auto crs = read_crs(*object);
+  if (!crs) return std::move(crs).error();
+  request.crs = std::move(*crs);
+  auto member = object->require("ops");
+  if (!member) return std::move(member).error();
+  auto ops = member->array(max_ops);
+  if (!ops) return std::move(ops).error();
+  request.ops.reserve(ops->size());
+  for (const Value item : *ops) {
+    auto op = read_op(item);
+    if (!op) return std::move(op).error();
+    request.ops.push_back(std::move(*op));
+  }
+  return request;
+}
+
+Result<ElevationRequest> read_elevation_request(std::string_view body, std::size_t max_positions) {
+  auto document = Document::parse(body);
+  if (!document) return std::move(document).error();
+  auto object = document->root().object({"positions", "crs", "voids"});
+  if (!object) return std::move(object).error();
+  ElevationRequest request;
+  auto crs = read_crs(*object);
+  if (!crs) return std::move(crs).error();
+  request.crs = std::move(*crs);
+  if (const auto member = object->find("voids")) {
+    auto text = member->string(kMaxWord);
+    if (!text) return std::move(text).error();
+    auto voids = parse_voids(*text, member->pointer());
+    if (!voids) return std::move(voids).error();
+    request.voids = *voids;
+  }
+  auto member = object->require("positions");
+  if (!member) return std::move(member).error();
+  auto positions = member->array(max_positions);
+  if (!positions) return std::move(positions).error();
+  request.positions.reserve(positions->size());
+  for (const Value item : *positions) {
+    auto numbers = read_numbers<2>(item);
+    if (!numbers) return std::move(numbers).error();
+    request.positions.push_back({(*numbers)[0], (*numbers)[1]});
+  }
+  return request;
+}
+
+Result<SimplifyRequest> read_simplify_request(std::string_view body) {
+  auto document = Document::parse(body);
+  if (!document) return std::move(document).error();
+  // Members of OGC API Processes beside the inputs are taken and change nothing: there is one kind of answer.
+  auto object = document->root().object({"inputs", "outputs", "response", "mode"});
+  if (!object) return std::move(object).error();
+  auto member = object->require("inputs");
+  if (!member) return std::move(member).error();
+  auto inputs = member->object({"tin", "tolerance", "maxVertices", "as", "effort"});
+  if (!inputs) return std::move(inputs).error();
+  if (auto tin = inputs->require("tin"); !tin) return std::move(tin).error();
+  SimplifyRequest request;
+  auto tin = read_tin_id(*inputs, "tin");
+  if (!tin) return std::move(tin).error();
+  request.tin = tin->value();
+  auto as = read_tin_id(*inputs, "as");
+  if (!as) return std::move(as).error();
+  request.as = std::move(*as);
+  if (auto goals = read_simplify_goals(*inputs, request); !goals) return std::move(goals).error();
+  return request;
+}
+
+}  // namespace proto
