@@ -1,0 +1,211 @@
+#include "server/config.h"
+
+#include <arpa/inet.h>
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+using tin::base::Code;
+using tin::base::Error;
+using tin::base::Result;
+
+constexpr std::int64_t kMillion = 1'000'000;
+constexpr std::int64_t kGiB = std::int64_t{1} << 30;
+
+// A number that can be set, and its range.
+struct Number {
+  std::int64_t* value;
+  std::int64_t least;
+  std::int64_t most;
+};
+using Numbers = std::map<std::string, Number>;  // by JSON pointer
+
+// The upper bounds keep sums and products of limits within 64 bits, and masks of rasters within what a
+// checkpoint holds.
+Numbers numbers_of(LimitConfig& limits) {
+  return {{"/limits/body_bytes_memory", {&limits.body_bytes_memory, 1024, 4 * kGiB}},
+          {"/limits/upload_bytes", {&limits.upload_bytes, 1024, 1024 * kGiB}},
+          {"/limits/raster_pixels", {&limits.raster_pixels, 1, kGiB}},
+          {"/limits/export_pixels", {&limits.export_pixels, 1, 16 * kGiB}},
+          {"/limits/vertices_per_tin", {&limits.vertices_per_tin, 1, 500 * kMillion}},
+          {"/limits/tins", {&limits.tins, 1, kMillion}},
+          {"/limits/edits_per_request", {&limits.edits_per_request, 1, 10 * kMillion}},
+          {"/limits/positions_per_request", {&limits.positions_per_request, 1, 100 * kMillion}},
+          {"/limits/page_size", {&limits.page_size, 1, kMillion}},
+          {"/limits/page_size_max", {&limits.page_size_max, 1, kMillion}}};
+}
+
+Numbers numbers_of(JobConfig& jobs) {
+  return {{"/jobs/workers", {&jobs.workers, 1, 256}},
+          {"/jobs/queued", {&jobs.queued, 1, 100'000}},
+          {"/jobs/kept", {&jobs.kept, 1, 100'000}},
+          {"/jobs/sync_seconds", {&jobs.sync_seconds, 0, 3600}}};
+}
+
+Numbers numbers_of(HttpConfig& http) {
+  return {{"/http/io_threads", {&http.io_threads, 1, 256}},
+          {"/http/worker_threads", {&http.worker_threads, 0, 1024}},
+          {"/http/header_bytes", {&http.header_bytes, 1024, kMillion}},
+          {"/http/header_fields", {&http.header_fields, 8, 10'000}},
+          {"/http/target_bytes", {&http.target_bytes, 256, kMillion}},
+          {"/http/header_seconds", {&http.header_seconds, 1, 3600}},
+          {"/http/body_bytes_per_second", {&http.body_bytes_per_second, 1, kGiB}},
+          {"/http/stall_seconds", {&http.stall_seconds, 1, 3600}},
+          {"/http/keep_alive_seconds", {&http.keep_alive_seconds, 1, 3600}},
+          {"/http/requests_per_connection", {&http.requests_per_connection, 1, 1000 * kMillion}},
+          {"/http/connections", {&http.connections, 1, kMillion}},
+          {"/http/connections_per_address", {&http.connections_per_address, 1, kMillion}},
+          {"/http/drain_seconds", {&http.drain_seconds, 0, 3600}}};
+}
+
+Error invalid(const std::string& pointer, const std::string& rule) {
+  return tin::base::error(Code::kInvalidValue, "must be " + rule, pointer);
+}
+
+// An integer within int64; nlohmann's own conversions wrap around or cut off without a word.
+std::optional<std::int64_t> integer(const json& value) {
+  if (!value.is_number_integer()) return std::nullopt;
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX) return std::nullopt;
+  return value.get<std::int64_t>();
+}
+
+Result<void> set_number(const Number& number, const json& value, const std::string& pointer) {
+  const auto given = integer(value);
+  if (!given || *given < number.least || *given > number.most) {
+    return invalid(pointer,
+                   "an integer from " + std::to_string(number.least) + " to " + std::to_string(number.most));
+  }
+  *number.value = *given;
+  return {};
+}
+
+// "a/b~c" as a token of a JSON pointer (RFC 6901).
+std::string token(const std::string& key) {
+  json::json_pointer pointer;
+  pointer.push_back(key);
+  return pointer.to_string();
+}
+
+Result<void> set_section(const Numbers& numbers, const json& section, const std::string& pointer) {
+  if (!section.is_object()) return invalid(pointer, "an object");
+  for (const auto& [key, value] : section.items()) {
+    const std::string place = pointer + token(key);
+    const auto known = numbers.find(place);
+    if (known == numbers.end())
+      return tin::base::error(Code::kUnknownParameter, "there is no such key", place);
+    if (auto set = set_number(known->second, value, place); !set.ok()) return set;
+  }
+  return {};
+}
+
+Result<void> set_listen(Config& config, const json& value) {
+  auto listen = parse_listen(value.is_string() ? value.get<std::string>() : "");
+  if (!listen.ok()) return tin::base::error(Code::kInvalidValue, listen.error().message, "/listen");
+  config.listen = *std::move(listen);
+  return {};
+}
+
+Result<void> set_data_dir(Config& config, const json& value) {
+  if (!value.is_string() || value.get<std::string>().empty())
+    return invalid("/data_dir", "the path of a folder");
+  config.data_dir = value.get<std::string>();
+  return {};
+}
+
+Result<void> set_log_level(Config& config, const json& value) {
+  for (const char* level : {"debug", "info", "warning", "error", "off"}) {
+    if (value != level) continue;
+    config.log_level = level;
+    return {};
+  }
+  return invalid("/log_level", "\"debug\", \"info\", \"warning\", \"error\" or \"off\"");
+}
+
+Result<void> set_key(Config& config, const std::string& key, const json& value) {
+  if (key == "listen") return set_listen(config, value);
+  if (key == "data_dir") return set_data_dir(config, value);
+  if (key == "log_level") return set_log_level(config, value);
+  if (key == "limits") return set_section(numbers_of(config.limits), value, "/limits");
+  if (key == "jobs") return set_section(numbers_of(config.jobs), value, "/jobs");
+  if (key == "http") return set_section(numbers_of(config.http), value, "/http");
+  return tin::base::error(Code::kUnknownParameter, "there is no such key", token(key));
+}
+
+Result<Config> config_of(const json& document) {
+  if (!document.is_object()) return tin::base::error(Code::kMalformed, "must be a JSON object");
+  Config config;
+  for (const auto& [key, value] : document.items()) {
+    if (auto set = set_key(config, key, value); !set.ok()) return std::move(set).error();
+  }
+  if (config.limits.page_size > config.limits.page_size_max) {
+    return invalid("/limits/page_size",
+                   "at most page_size_max, which is " + std::to_string(config.limits.page_size_max));
+  }
+  return config;
+}
+
+bool is_address(int family, const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> ignored;
+  return inet_pton(family, text.c_str(), ignored.data()) == 1;
+}
+
+std::optional<std::uint16_t> port_of(std::string_view text) {
+  std::uint16_t port = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), port);
+  if (failure != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return port;
+}
+
+// The address in what stands before the port; empty if it is none.
+std::string address_of(std::string_view host) {
+  if (host == "localhost") return "127.0.0.1";
+  const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  const std::string address(bracketed ? host.substr(1, host.size() - 2) : host);
+  return is_address(bracketed ? AF_INET6 : AF_INET, address) ? address : "";
+}
+
+}  // namespace
+
+Result<Listen> parse_listen(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon != std::string_view::npos && text.find('\0') == std::string_view::npos) {
+    const std::string address = address_of(text.substr(0, colon));
+    const auto port = port_of(text.substr(colon + 1));
+    if (!address.empty() && port) return Listen{address, *port};
+  }
+  return tin::base::error(Code::kInvalidValue,
+                          "must be an address and a port, such as 127.0.0.1:8080 or [::1]:8080");
+}
+
+Result<Config> parse_config(std::string_view text, std::string_view name) {
+  const std::string prefix = std::string(name) + ": ";
+  json document;
+  try {
+    document = json::parse(text);
+  } catch (const json::parse_error& failure) {
+    return tin::base::error(Code::kMalformed, prefix + failure.what());
+  }
+  auto config = config_of(document);
+  if (config.ok()) return config;
+  Error error = std::move(config).error();
+  error.message = prefix + (error.where.empty() ? "" : error.where + " ") + error.message;
+  return error;
+}
+
+Result<Config> read_config(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return tin::base::error(Code::kNotFound, "cannot read the configuration " + file.string());
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return parse_config(text, file.string());
+}
+
+}  // namespace server

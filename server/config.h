@@ -1,0 +1,88 @@
+// What an operator can set, with the defaults of one who sets nothing. Read and checked once, at the start.
+//
+//   {"listen": "0.0.0.0:8080", "limits": {"tins": 10}}      // every key is optional
+//
+// deploy/config.example.json has all keys at their defaults.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "tin/base/result.h"
+
+namespace server {
+
+/// Where the server listens.
+struct Listen {
+  std::string address = "127.0.0.1";  // IPv4 or IPv6, without brackets
+  std::uint16_t port = 8080;          // 0: any free one
+  friend bool operator==(const Listen&, const Listen&) = default;
+};
+
+struct LimitConfig {
+  std::int64_t body_bytes_memory = 32 << 20;          // of a body that is read into memory
+  std::int64_t upload_bytes = std::int64_t{2} << 30;  // of a body that goes to a file
+  std::int64_t raster_pixels = 200'000'000;           // of an uploaded raster
+  std::int64_t export_pixels = 400'000'000;           // of a raster that is made
+  std::int64_t vertices_per_tin = 50'000'000;
+  std::int64_t tins = 1000;
+  std::int64_t edits_per_request = 100'000;
+  std::int64_t positions_per_request = 1'000'000;
+  std::int64_t page_size = 100;         // when a request does not say
+  std::int64_t page_size_max = 10'000;  // the most that it may say; not less than page_size
+  friend bool operator==(const LimitConfig&, const LimitConfig&) = default;
+};
+
+struct JobConfig {
+  std::int64_t workers = 1;
+  std::int64_t queued = 16;
+  std::int64_t kept = 200;
+  std::int64_t sync_seconds =
+      60;  // how long a request waits for its job before it is told where to ask later
+  friend bool operator==(const JobConfig&, const JobConfig&) = default;
+};
+
+struct HttpConfig {
+  std::int64_t io_threads = 2;
+  std::int64_t worker_threads = 0;  // 0: one per core
+  std::int64_t header_bytes = 16 * 1024;
+  std::int64_t header_fields = 100;
+  std::int64_t target_bytes = 8 * 1024;
+  std::int64_t header_seconds = 10;
+  std::int64_t body_bytes_per_second = 1024;  // the least, either way
+  std::int64_t stall_seconds = 60;            // without any progress of a body
+  std::int64_t keep_alive_seconds = 75;
+  std::int64_t requests_per_connection = 1000;
+  std::int64_t connections = 1000;
+  std::int64_t connections_per_address = 200;
+  std::int64_t drain_seconds = 30;  // for what runs when the server is told to stop
+  friend bool operator==(const HttpConfig&, const HttpConfig&) = default;
+};
+
+struct Config {
+  Listen listen;
+  std::filesystem::path data_dir = "data";
+  std::string log_level = "info";  // debug, info, warning, error or off
+  LimitConfig limits;
+  JobConfig jobs;
+  HttpConfig http;
+  friend bool operator==(const Config&, const Config&) = default;
+};
+
+/// The configuration in `file`.
+///
+/// Errors: kNotFound (no such file), kMalformed (no JSON object), kUnknownParameter (a key that there is
+/// not),
+///         kInvalidValue (type or range); `where` is the JSON pointer, and the message names file and
+///         pointer.
+tin::base::Result<Config> read_config(const std::filesystem::path& file);
+
+/// The configuration in `text`; `name` stands for the file in messages.
+tin::base::Result<Config> parse_config(std::string_view text, std::string_view name);
+
+/// "127.0.0.1:8080", "[::1]:8080" or "localhost:8080" (which is 127.0.0.1). Errors: kInvalidValue.
+tin::base::Result<Listen> parse_listen(std::string_view text);
+
+}  // namespace server
