@@ -35,18 +35,20 @@ missing() {
 
 # need GROUP...: installs what is missing of these groups; touches neither apt nor the network when nothing is.
 need() {
-  local names absent
+  local names absent log
   command -v dpkg-query >/dev/null 2>&1 || die "the packages are Debian's: this needs Debian 12 (bookworm)"
   mapfile -t names < <(packages "$@")
   mapfile -t absent < <(missing "${names[@]}")
   [ ${#absent[@]} -eq 0 ] && return
   [ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null 2>&1 ||
     die "these packages are missing, and installing them takes root or sudo: ${absent[*]}"
-  say "installing: ${absent[*]}"
-  as_root apt-get update -qq || die "apt-get update failed: is the package mirror within reach?"
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-    -o Dpkg::Use-Pty=0 "${absent[@]}" >/dev/null ||
-    die "apt-get could not install the packages of deploy/packages.txt, which names those of Debian 12 (bookworm)"
+  say "installing ${#absent[@]} packages and what they depend on: ${absent[*]}"
+  log=$(mktemp)
+  as_root apt-get update -qq >"$log" 2>&1 ||
+    { cat "$log" >&2; rm -f "$log"; die "apt-get update failed: is the package mirror within reach?"; }
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${absent[@]}" >"$log" 2>&1 ||
+    { cat "$log" >&2; rm -f "$log"; die "apt-get could not install them; deploy/packages.txt names packages of Debian 12 (bookworm)"; }
+  rm -f "$log"
 }
 
 # build PRESET TESTS: configures and builds build/PRESET, with tests if TESTS is ON.
