@@ -114,7 +114,7 @@ TEST(AnswersTest, OfJobsKeepTheContract) {
   for (const JobState state : {JobState::kAccepted, JobState::kRunning, JobState::kSuccessful,
                                JobState::kFailed, JobState::kDismissed}) {
     proto::JobStatus job;
-    job.id = "j" + std::to_string(jobs.size());
+    job.id = std::string("j").append(std::to_string(jobs.size()));
     job.process = "simplify";
     job.state = state;
     job.progress = static_cast<int>(jobs.size()) * 50;  // past 100: must be written as 100

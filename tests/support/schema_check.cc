@@ -83,7 +83,7 @@ std::vector<std::string> validate(const Json& schema_node, const Json& value) {
 
 std::vector<std::string> validate_text(const Json& schema_node, std::string_view body) {
   const Json value = Json::parse(body, nullptr, false);
-  if (value.is_discarded()) return {"not JSON: " + std::string(body.substr(0, 200))};
+  if (value.is_discarded()) return {std::string("not JSON: ").append(body.substr(0, 200))};
   return validate(schema_node, value);
 }
 
@@ -152,7 +152,7 @@ std::vector<std::string> request_violations(std::string_view method, std::string
 std::vector<std::string> schema_violations(std::string_view schema_name, std::string_view body) {
   const Json& schemas = contract().at("components").at("schemas");
   const auto schema = schemas.find(std::string(schema_name));
-  if (schema == schemas.end()) return {"there is no schema " + std::string(schema_name)};
+  if (schema == schemas.end()) return {std::string("there is no schema ").append(schema_name)};
   return validate_text(*schema, body);
 }
 
