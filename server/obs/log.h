@@ -1,7 +1,7 @@
 // The log: one JSON object per line on stderr, for people with grep and for collectors alike.
 //
-//   log_info("tin_created", {{"tin", id}, {"vertices", count}, {"seconds", 1.25}});
-//   {"time":"2024-05-01T12:00:00.000Z","level":"info","event":"tin_created","tin":"alps","vertices":7,"seconds":1.25}
+//   log_info("tin_created", {{"tin", id}, {"vertices", count}});
+//   {"time":"2024-05-01T12:00:00.000Z","level":"info","event":"tin_created","tin":"alps","vertices":7}
 #pragma once
 
 #include <concepts>

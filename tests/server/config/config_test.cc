@@ -63,7 +63,8 @@ TEST(ConfigTest, TheExampleHasEveryKey) {
 
 TEST(ConfigTest, ValuesAreTaken) {
   const Config config = parsed(R"({"listen": "[::1]:0", "data_dir": "/srv/tins", "log_level": "debug",
-                                   "limits": {"tins": 7}, "jobs": {"workers": 2}, "http": {"drain_seconds": 0}})");
+                                   "limits": {"tins": 7}, "jobs": {"workers": 2},
+                                   "http": {"drain_seconds": 0}})");
   EXPECT_EQ(config.listen, (Listen{"::1", 0}));
   EXPECT_EQ(config.data_dir, "/srv/tins");
   EXPECT_EQ(config.log_level, "debug");
