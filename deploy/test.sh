@@ -45,16 +45,16 @@ ctest --test-dir "$ROOT/build/$preset" --parallel 2 --output-on-failure --no-tes
   --output-junit "$results" ${options[@]+"${options[@]}"} || status=$?
 [ -s "$results" ] || die "ctest left no results"
 
-# CTest calls a test that did not run "skipped" or "disabled"; one that passed is "run", one that did not is "fail".
+# In CTest's words "run" is a test that passed; "notrun" one whose program is missing, or one that skips itself.
 awk '
   /<testcase / {
     if (/ status="run"/) passed++
-    else if (/ status="fail"/) failed++
-    else other++
+    else if (/ status="disabled"/) skipped++
+    else failed++
   }
+  /<skipped message="SKIP_/ { failed--; skipped++ }
   END {
-    if (other) printf "%d not run\n", other
+    if (skipped) printf "%d skipped\n", skipped
     printf "%d passed, %d failed\n", passed, failed
-    exit failed > 0
-  }' "$results" || [ "$status" -ne 0 ] || status=1
+  }' "$results"
 exit "$status"
