@@ -1,0 +1,80 @@
+#include "server/gdal/import.h"
+
+#include <ogr_spatialref.h>
+
+#include "server/gdal/import_internal.h"
+#include "server/gdal/library.h"
+
+namespace server::gdal {
+
+using tin::base::Result;
+
+void describe_frame(tin::frame::Frame& frame, const std::optional<CrsInfo>& crs,
+                    std::optional<VerticalUnit> own) {
+  if (crs) frame.crs = crs->name;
+  if (!own && crs) own = crs->vertical;
+  if (own) {
+    frame.vertical_unit = own->name;
+    frame.vertical_unit_m = own->metres;
+  }
+}
+
+Result<std::optional<CrsInfo>> effective_crs(const ImportTask& task, const OGRSpatialReference* found) {
+  if (task.asked_crs) return task.asked_crs;
+  if (found == nullptr || found->IsEmpty()) return std::optional<CrsInfo>();
+  // What GeoPackage calls its layers without a CRS.
+  if (found->IsLocal() && STARTS_WITH_CI(found->GetName(), "Undefined")) return std::optional<CrsInfo>();
+  auto info = describe_crs(*found);
+  if (!info) return info.error();
+  // GDAL's name for the CRS84 of GeoJSON whose points have heights.
+  if (task.format == Format::kGeoJson && info->name == "EPSG:4979") info->name = "EPSG:4326";
+  return std::optional<CrsInfo>(*std::move(info));
+}
+
+namespace {
+
+Result<Import> import_points(const ImportTask& task) {
+  auto raw = task.format == Format::kDelimited ? read_delimited_points(task) : read_vector_points(task);
+  if (!raw) return raw.error();
+  return place_points(task, *std::move(raw));
+}
+
+bool holds_raster(Format format) {
+  switch (format) {
+    case Format::kGeoTiff:
+    case Format::kHgt:
+    case Format::kAsciiGrid:
+    case Format::kUsgsDem:
+    case Format::kDted:
+      return true;
+    case Format::kDelimited:
+    case Format::kGeoJson:
+    case Format::kGeoPackage:
+    case Format::kFlatGeobuf:
+      return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOptions& options,
+                           tin::base::Progress* progress) {
+  prepare_library();
+  std::optional<CrsInfo> asked;
+  if (!options.crs.empty()) {
+    auto crs = read_crs(options.crs);
+    if (!crs) return crs.error();
+    asked = *std::move(crs);
+  }
+  const auto recognised = recognise(uploaded, options);
+  if (!recognised) return recognised.error();
+  const auto workspace = Workspace::create(uploaded, recognised->file_name);
+  if (!workspace) return workspace.error();
+  const ImportTask task{options, *workspace, recognised->format, std::move(asked), progress};
+  auto import = holds_raster(task.format) ? import_raster(task) : import_points(task);
+  if (import) task.report(1);
+  return import;
+}
+
+}  // namespace server::gdal

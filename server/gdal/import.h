@@ -1,0 +1,64 @@
+// From an uploaded file to lattice points: elevation rasters and point files of the formats that we read.
+//
+//   ImportOptions options;
+//   options.file_name = "N44W072.hgt";
+//   auto import = import_file("/data/uploads/17", options, &progress);
+//   if (import) terrain.load(import->frame, import->placements);
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tin/base/progress.h"
+#include "tin/base/result.h"
+#include "tin/frame/frame.h"
+#include "tin/terrain/edit.h"
+#include "tin/terrain/source_grid.h"
+
+namespace server::gdal {
+
+/// What the client says about its file, none of it trusted, and the limits.
+struct ImportOptions {
+  std::string file_name;     // helps to recognise the format, and places an HGT; never opened
+  std::string content_type;  // helps to recognise the format
+  std::string
+      format;       // insists on a format: geotiff, hgt, aaigrid, usgsdem, dted, csv, xyz, geojson, gpkg, fgb
+  std::string crs;  // replaces or supplies the file's CRS, in any form that read_crs() takes
+  double resolution_x = 0;  // lattice steps in CRS units; 0: about 1 mm on the ground
+  double resolution_y = 0;
+  std::string layer;                       // vector files: the layer; empty: the first with points
+  std::string z_field;                     // point files: column or field of the heights
+  std::uint64_t max_samples = 50'000'000;  // valid pixels, or points
+  std::uint64_t max_pixels = 200'000'000;  // width x height of a raster
+};
+
+/// What a file holds, on a lattice that fits it.
+struct Import {
+  tin::frame::Frame frame;
+  /// Valid pixels in the order of the file's rows, or points in the file's order; duplicates are not looked
+  /// for. Heights are in frame.vertical_unit.
+  std::vector<tin::terrain::Placement> placements;
+  std::shared_ptr<tin::terrain::SourceGrid> grid;  // null for points
+  std::string driver;                              // GDAL's name of the format, or "CSV"
+};
+
+/// Reads an uploaded file, which stays where it is. Only formats of a fixed list are tried, on a private link
+/// to the file without its neighbours, and no network, VRT or sidecar file can be reached by what it says.
+///
+/// Rasters: band 1, pixel centres, scale and offset applied; pixels that are nodata, masked, not finite or
+/// beyond
+/// +-1e30 (undeclared fill values) are void. Rows may run north to south or south to north.
+/// Points: columns or fields by their usual names, else the first three numeric columns; GeoJSON is CRS84
+/// unless it says otherwise, and columns called longitude and latitude are too.
+///
+/// Errors: kInvalidValue (empty file or raster, no valid sample, no georeference, an HGT without its name, no
+/// heights, unknown layer or field), kUnsupported (format, CRS, rotated raster, complex pixels), kMalformed
+/// (with the line for text), kNotFinite, kTooLarge, kCancelled, kStorage. Threads: any number at once on
+/// different files. `progress` may be null.
+tin::base::Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOptions& options,
+                                      tin::base::Progress* progress);
+
+}  // namespace server::gdal
