@@ -1,0 +1,50 @@
+// One request and what becomes of it, apart from its bytes on the wire. Knows no sockets.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "server/http/admission.h"
+#include "server/http/answer.h"
+#include "server/http/framing.h"
+#include "server/http/session.h"
+
+namespace server::http {
+
+/// Threads: one at a time.
+class Exchange {
+ public:
+  Exchange(SessionContext& shared, const std::string& peer);
+  Exchange(Exchange&&) = delete;
+  ~Exchange();  // removes the upload if nobody took it
+
+  /// Takes the head and decides on it: see admission().
+  void admit(Head& head);
+
+  /// Says whether the connection is good for another request after this one; not, until it is said.
+  void allow_keep_alive(bool allowed) { keep_alive_ = allowed; }
+
+  /// Calls the handler and makes its answer. Requires: an admission without an answer, the body read.
+  Answer handle();
+
+  /// Makes an answer without a handler.
+  Answer reply(Response response);
+
+  /// Reports to the observer what has been sent.
+  void finish(const Answer& answer, bool whole);
+
+  Admission& admission() { return admission_; }
+  Access& access() { return access_; }
+
+ private:
+  void forget_request_body();
+
+  SessionContext& shared_;
+  Admission admission_;
+  AnswerContext context_;
+  Access access_;
+  bool keep_alive_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace server::http
