@@ -99,7 +99,8 @@ class HeadReader {
       authority_ = lower_case(target.substr(0, end));
       if (authority_->empty()) return bad("the request target has no host");
       target.remove_prefix(end);
-      head_.target = target.starts_with('/') ? std::string(target) : "/" + std::string(target);
+      head_.target = target;
+      if (!target.starts_with('/')) head_.target.insert(head_.target.begin(), '/');
       return std::nullopt;
     }
     if (!target.starts_with('/')) return bad("the request target must begin with a slash");

@@ -33,11 +33,10 @@ struct Request {
   std::string path;              // percent-decoded
   NamedValues query;             // decoded; each name at most once, and known to the route
   std::map<std::string, std::string, std::less<>> path_parameters;  // by the names in the route's pattern
-  NamedValues headers;  // names in lower case; repeated fields joined with ", "
-  std::string body;     // when the route takes it in memory
-  std::filesystem::path
-      body_file;   // when the route takes it as a file: ours, gone after the handler returned
-  std::string id;  // also the answer's X-Request-Id
+  NamedValues headers;              // names in lower case; repeated fields joined with ", "
+  std::string body;                 // when the route takes it in memory
+  std::filesystem::path body_file;  // when the route takes it as a file: gone after the handler returned
+  std::string id;                   // also the answer's X-Request-Id
 
   /// The value of a query parameter, if it was sent.
   std::optional<std::string> query_value(std::string_view name) const;

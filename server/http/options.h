@@ -42,7 +42,7 @@ struct ServerOptions {
 struct ErrorPages {
   /// For what has a code: no such path, unknown parameter, body too large, upload not stored.
   std::function<Response(const tin::base::Error&)> error;
-  /// For what is plain HTTP (400, 405, 408, 414, 417, 431, 500, 501, 503, 505); `detail` is for people.
+  /// For what is plain HTTP (400, 405, 408, 413, 414, 417, 431, 500, 501, 503, 505); `detail` is for people.
   std::function<Response(int status, const std::string& detail)> status;
 };
 

@@ -26,9 +26,8 @@ class Server {
 
   /// Begins to serve, and says on which port.
   ///
-  /// Errors: kInvalidValue (the address is none, or not one of this machine; a limit below its least value),
-  /// kConflict (port taken or
-  ///         not permitted), kStorage (no folder for uploads), kInternal.
+  /// Errors: kInvalidValue (no address, or not one of this machine; a limit below its least value),
+  ///         kConflict (port taken or not permitted), kStorage (no folder for uploads), kInternal.
   tin::base::Result<std::uint16_t> start();
 
   /// Stops accepting, closes idle connections, lets running requests finish (with Connection: close), cuts
