@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace proto {
 
@@ -23,6 +24,7 @@ class JsonWriter {
   JsonWriter& integer(std::uint64_t value);
   /// Shortest round trip; a number that is not finite, which JSON cannot say, becomes null.
   JsonWriter& number(double value);
+  JsonWriter& boolean(bool value) { return raw(value ? "true" : "false"); }
   JsonWriter& null() { return raw("null"); }
   /// `json` must be a JSON value.
   JsonWriter& raw(std::string_view json);

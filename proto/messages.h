@@ -200,7 +200,8 @@ struct SimplifyResults {
   std::uint64_t vertices_before = 0;
   std::uint64_t vertices_after = 0;
   double max_error = 0;                   // in the TIN's vertical unit, over every source sample
-  std::optional<Position2> max_error_at;  // null when there was no sample
+  std::optional<Position2> max_error_at;  // null when every sample lies on the result
+  bool tolerance_met = true;              // false only when max_vertices got in its way
   double rmse = 0;
   double seconds = 0;
   std::string tin;

@@ -257,6 +257,7 @@ std::string simplify_results_json(const SimplifyResults& results) {
   json.key("maxErrorAt");
   results.max_error_at ? write_pair(json, results.max_error_at->x, results.max_error_at->y)
                        : void(json.null());
+  json.key("toleranceMet").boolean(results.tolerance_met);
   json.key("rmse").number(results.rmse);
   json.key("seconds").number(results.seconds);
   json.key("tin").string(results.tin);
