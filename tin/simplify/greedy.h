@@ -1,0 +1,55 @@
+// Greedy insertion: the sample furthest from the TIN becomes a vertex, again and again.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "tin/simplify/phase.h"
+#include "tin/simplify/working_tin.h"
+
+namespace tin::simplify {
+
+/// One run of insertions. Only triangles with a sample over the target are queued.
+class Greedy {
+ public:
+  static constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
+  enum class End { kTargetMet, kBudgetSpent, kCancelled };
+
+  /// Requires: target finite and >= 0. Borrows `tin`.
+  Greedy(WorkingTin& tin, double target) : tin_(tin), target_(target) {}
+
+  /// Inserts until every sample is within the target (exactly), or `budget` vertices stand.
+  End run(std::size_t budget, const Phase& phase);
+
+  /// After kBudgetSpent: removes again what came after the state of the least largest error, since that error
+  /// does not fall steadily. Returns it, rounded.
+  double return_to_best();
+
+ private:
+  struct Candidate {
+    double error;
+    SampleIndex sample;
+    std::uint32_t triangle, stamp;
+    /// For a heap with the largest error on top, then the smallest sample.
+    friend bool operator<(const Candidate& a, const Candidate& b) {
+      return a.error != b.error ? a.error < b.error : a.sample > b.sample;
+    }
+  };
+  bool queue_all(const Phase& phase);
+  void queue(mesh::TriangleSlot t);
+  std::optional<Candidate> take_worst();
+  void note_state(double error);
+
+  WorkingTin& tin_;
+  double target_;
+  std::vector<Candidate> heap_;
+  std::vector<std::uint32_t> stamps_;  // of each triangle: candidates with an older one are void
+  std::vector<mesh::VertexSlot> inserted_;
+  double best_error_ = std::numeric_limits<double>::infinity();
+  std::size_t best_count_ = 0;  // of inserted_
+};
+
+}  // namespace tin::simplify

@@ -1,0 +1,216 @@
+#include "tin/simplify/grid_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tin/simplify/ranking.h"
+#include "tin/simplify/spans.h"
+
+namespace tin::simplify {
+
+using exact::Point;
+
+namespace {
+
+GridPoint cell_of(const Site& site) {
+  return {site.column, site.row};
+}
+
+/// Where the line at height `y` cuts the triangle, roughly: within one lattice step.
+std::pair<double, double> cut(const std::array<Point, 3>& corners, std::int32_t y) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point a = corners[i], b = corners[i == 2 ? 0 : i + 1];
+    if (std::min(a.y, b.y) > y || std::max(a.y, b.y) < y) continue;
+    const double rise = static_cast<double>(b.y) - a.y, run = static_cast<double>(b.x) - a.x;
+    const double x = rise == 0 ? a.x : a.x + (static_cast<double>(y) - a.y) * run / rise;
+    low = std::min(low, rise == 0 ? std::min<double>(a.x, b.x) : x);
+    high = std::max(high, rise == 0 ? std::max<double>(a.x, b.x) : x);
+  }
+  return {low, high};
+}
+
+/// Whole numbers from below `from` to above `to` (in either order), within 0..count-1.
+std::pair<std::int32_t, std::int32_t> widened(double from, double to, std::int32_t count) {
+  const double low = std::floor(std::min(from, to)) - 1, high = std::ceil(std::max(from, to)) + 1;
+  return {static_cast<std::int32_t>(std::clamp(low, 0.0, static_cast<double>(count))),
+          static_cast<std::int32_t>(std::clamp(high, -1.0, static_cast<double>(count) - 1))};
+}
+
+}  // namespace
+
+GridSamples::GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
+                         const base::Progress* progress)
+    : grid_(grid),
+      others_(std::move(others), static_cast<SampleIndex>(cell_count()), progress),
+      progress_(progress) {}
+
+Scan GridSamples::scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const {
+  const bool on_cells = a.column >= 0 && b.column >= 0 && c.column >= 0;
+  Scan found =
+      on_cells ? scan_cells(a, b, c, tolerance, depth) : scan_between_cells(a, b, c, tolerance, depth);
+  if (!others_.empty()) keep_worse(found, others_.scan(a, b, c, tolerance, depth));
+  return found;
+}
+
+/// A corner is no cell centre (someone moved or added it): each cell near is asked on the lattice.
+Scan GridSamples::scan_between_cells(const Site& a, const Site& b, const Site& c, double tolerance,
+                                     Depth depth) const {
+  const Facet facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z});
+  const std::array<Point, 3> corners{a.at, b.at, c.at};
+  const auto [low_y, high_y] = std::minmax({a.at.y, b.at.y, c.at.y});
+  const auto rows = widened((static_cast<double>(low_y) - grid_.y0) / grid_.dy,
+                            (static_cast<double>(high_y) - grid_.y0) / grid_.dy, grid_.height);
+  Scan found;
+  for (std::int32_t row = rows.first; row <= rows.second && !cancelled(); ++row) {
+    const auto [low_x, high_x] = cut(corners, grid_.centre(0, row).y);
+    if (low_x > high_x) continue;
+    const auto columns = widened((low_x - grid_.x0) / grid_.dx, (high_x - grid_.x0) / grid_.dx, grid_.width);
+    for (std::int32_t column = columns.first; column <= columns.second; ++column) {
+      const auto weights = facet.weights(grid_.centre(column, row));
+      const auto z = weights ? height(index(column, row)) : std::nullopt;
+      if (!z) continue;
+      const auto verdict = facet.judge(*weights, *z, tolerance);
+      keep_worse(found, {verdict.error, index(column, row), !verdict.within});
+      if (found.over && depth == Depth::kFirstOver) return found;
+    }
+  }
+  return found;
+}
+
+Site GridSamples::site(SampleIndex sample) const {
+  if (sample >= cell_count()) return others_.site(sample);
+  const auto width = static_cast<SampleIndex>(grid_.width);
+  const auto column = static_cast<std::int32_t>(sample % width),
+             row = static_cast<std::int32_t>(sample / width);
+  return {grid_.centre(column, row), column, row, height(sample).value(), sample};
+}
+
+SampleIndex GridSamples::find(Point p) const {
+  if (const auto cell = grid_.cell_centred_at(p)) return index(cell->column, cell->row);
+  return others_.find(p);
+}
+
+// Whole heights
+// ------------------------------------------------------------------------------------------------
+
+bool WholeGridSamples::can_hold(const terrain::SourceGrid& grid, int shift, double largest) {
+  // A scan's largest numbers are below 4 * height * (twice the area) of the raster, or void * area.
+  const double cells = (grid.width + 1.0) * (grid.height + 1.0), height = std::ldexp(largest, shift);
+  return shift <= kMostShift && height < kMostHeight && cells < 0x1p+29 && 8 * height * cells < 0x1p+61;
+}
+
+WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift,
+                                   std::vector<Facet::Corner> others, const base::Progress* progress)
+    : GridSamples(grid, std::move(others), progress),
+      shift_(shift),
+      scale_(std::ldexp(1.0, shift)),
+      heights_(cell_count(), kVoid) {}
+
+Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
+                                  Depth depth) const {
+  const std::int64_t bx = b.column - a.column, by = b.row - a.row, cx = c.column - a.column,
+                     cy = c.row - a.row;
+  const std::int64_t turn = bx * cy - by * cx;
+  const std::int64_t sign = turn < 0 ? -1 : 1, area = sign * turn;
+  const std::int64_t base = whole(a.z), rise_b = sign * (whole(b.z) - base),
+                     rise_c = sign * (whole(c.z) - base);
+  // Over cell (x, y), counted from a: area * (interpolated - z) = area * (base - z) + x * slope_x + y *
+  // slope_y.
+  const std::int64_t slope_x = rise_b * cy - rise_c * by, slope_y = rise_c * bx - rise_b * cx;
+  const exact::Int128 exact_limit = floor_product(tolerance, shift_, area);
+  const std::int64_t limit = exact_limit > INT64_MAX ? INT64_MAX : static_cast<std::int64_t>(exact_limit);
+  std::int64_t worst = 0;
+  SampleIndex at = 0;
+  visit_spans(cell_of(a), cell_of(b), cell_of(c),
+              [&](std::int32_t row, std::int32_t first, std::int32_t last) {
+                const SampleIndex start = index(first, row);
+                const std::int32_t* const z = heights_.data() + start;
+                std::int64_t plane = area * base + (first - a.column) * slope_x + (row - a.row) * slope_y;
+                const std::int32_t count = last - first + 1;
+                for (std::int32_t i = 0; i < count; ++i, plane += slope_x) {
+                  const std::int64_t difference = plane - area * z[i];
+                  const std::int64_t distance = difference < 0 ? -difference : difference;
+                  if (distance <= worst || z[i] == kVoid) continue;
+                  worst = distance;
+                  at = start + static_cast<SampleIndex>(i);
+                }
+                return !(depth == Depth::kFirstOver && worst > limit) && !cancelled();
+              });
+  return {static_cast<double>(worst) / (static_cast<double>(area) * scale_), at, worst > limit};
+}
+
+std::optional<double> WholeGridSamples::height(SampleIndex cell) const {
+  if (heights_[cell] == kVoid) return std::nullopt;
+  return heights_[cell] / scale_;
+}
+
+// Real heights
+// -------------------------------------------------------------------------------------------------
+
+RealGridSamples::RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
+                                 const base::Progress* progress)
+    : GridSamples(grid, std::move(others), progress),
+      heights_(cell_count(), std::numeric_limits<double>::quiet_NaN()) {}
+
+Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
+                                 Depth depth) const {
+  const double bx = b.column - a.column, by = b.row - a.row, cx = c.column - a.column, cy = c.row - a.row;
+  const double turn = bx * cy - by * cx, area = std::abs(turn), sign = turn < 0 ? -1 : 1;
+  const double rise_b = sign * (b.z - a.z), rise_c = sign * (c.z - a.z);
+  const double slope_x = rise_b * cy - rise_c * by, slope_y = rise_c * bx - rise_b * cx;
+  const double limit = std::min(tolerance, 4 * kMostHeight) * area;
+  // With u = 2^-53 a distance is wrong by less than 10 u (|slope_x| x + |slope_y| y) + 4 u distance, the
+  // slopes taken without cancellation; 2^-48 is 32 u.
+  const double reach =
+      (std::abs(rise_b * cy) + std::abs(rise_c * by)) * std::max(std::abs(bx), std::abs(cx)) +
+      (std::abs(rise_c * bx) + std::abs(rise_b * cx)) * std::max(std::abs(by), std::abs(cy));
+  const double slack = 0x1p-48 * (reach + limit);
+  double worst = 0;
+  SampleIndex at = 0;
+  visit_spans(cell_of(a), cell_of(b), cell_of(c),
+              [&](std::int32_t row, std::int32_t first, std::int32_t last) {
+                const SampleIndex start = index(first, row);
+                const double* const z = heights_.data() + start;
+                const double from_y = (row - a.row) * slope_y;
+                const std::int32_t from_a = first - a.column, count = last - first + 1;
+                for (std::int32_t i = 0; i < count; ++i) {
+                  const double distance = std::abs(from_y + (from_a + i) * slope_x - area * (z[i] - a.z));
+                  if (!(distance > worst)) continue;  // also where there is no sample
+                  worst = distance;
+                  at = start + static_cast<SampleIndex>(i);
+                }
+                return !(depth == Depth::kFirstOver && worst - limit > slack) && !cancelled();
+              });
+  if (worst - limit > slack) return {worst / area, at, true};
+  if (worst - limit > -slack) return judge_all(a, b, c, tolerance);
+  return {worst / area, at, false};
+}
+
+/// The same, each cell judged exactly.
+Scan RealGridSamples::judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const {
+  const Facet facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z});
+  Scan found;
+  visit_spans(cell_of(a), cell_of(b), cell_of(c),
+              [&](std::int32_t row, std::int32_t first, std::int32_t last) {
+                for (std::int32_t column = first; column <= last; ++column) {
+                  const double z = heights_[index(column, row)];
+                  const auto weights = facet.weights(grid().centre(column, row));
+                  if (std::isnan(z) || !weights) continue;
+                  const auto verdict = facet.judge(*weights, z, tolerance);
+                  keep_worse(found, {verdict.error, index(column, row), !verdict.within});
+                }
+                return !cancelled();
+              });
+  return found;
+}
+
+std::optional<double> RealGridSamples::height(SampleIndex cell) const {
+  if (std::isnan(heights_[cell])) return std::nullopt;
+  return heights_[cell];
+}
+
+}  // namespace tin::simplify

@@ -1,0 +1,104 @@
+// Samples at the cell centres of a raster, found by scan lines; the few that are elsewhere stand in a tree
+// beside it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "tin/simplify/point_samples.h"
+#include "tin/simplify/samples.h"
+#include "tin/terrain/source_grid.h"
+
+namespace tin::simplify {
+
+/// A sample at a cell's centre.
+struct CellSample {
+  std::int32_t column, row;
+  double z;
+};
+
+/// What the two kinds of rasters share. Indices: row by row, then the samples off the raster.
+class GridSamples : public Samples {
+ public:
+  Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  Site site(SampleIndex sample) const override;
+  SampleIndex find(exact::Point p) const override;
+
+ protected:
+  GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
+              const base::Progress* progress);
+
+  /// Scans the cells of a triangle whose corners are cell centres.
+  virtual Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
+                          Depth depth) const = 0;
+  /// The height of a cell's sample; nothing where there is none.
+  virtual std::optional<double> height(SampleIndex cell) const = 0;
+
+  std::size_t cell_count() const {
+    return static_cast<std::size_t>(grid_.width) * static_cast<std::size_t>(grid_.height);
+  }
+  SampleIndex index(std::int32_t column, std::int32_t row) const {
+    return static_cast<SampleIndex>(row) * static_cast<SampleIndex>(grid_.width) +
+           static_cast<SampleIndex>(column);
+  }
+  bool cancelled() const { return progress_ != nullptr && progress_->cancelled(); }
+  const terrain::SourceGrid& grid() const { return grid_; }
+
+ private:
+  Scan scan_between_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const;
+
+  const terrain::SourceGrid& grid_;
+  PointSamples others_;
+  const base::Progress* progress_;
+};
+
+/// Heights that are whole multiples of 2^-shift: scans take integers only and are exact by themselves.
+class WholeGridSamples final : public GridSamples {
+ public:
+  /// Whether integers are wide enough for such heights, of absolute values up to `largest`.
+  static bool can_hold(const terrain::SourceGrid& grid, int shift, double largest);
+
+  /// Requires: can_hold().
+  WholeGridSamples(const terrain::SourceGrid& grid, int shift, std::vector<Facet::Corner> others,
+                   const base::Progress* progress);
+  void put(const CellSample& sample) {
+    heights_[index(sample.column, sample.row)] = static_cast<std::int32_t>(whole(sample.z));
+  }
+
+ private:
+  static constexpr std::int32_t kVoid = INT32_MIN;
+  static constexpr int kMostShift = 16;
+  static constexpr double kMostHeight = 0x1p+30;
+
+  std::int64_t whole(double z) const { return static_cast<std::int64_t>(z * scale_); }
+  Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  std::optional<double> height(SampleIndex cell) const override;
+
+  int shift_;
+  double scale_;
+  std::vector<std::int32_t> heights_;
+};
+
+/// Any heights: scans take doubles, and doubtful cells are judged exactly.
+class RealGridSamples final : public GridSamples {
+ public:
+  /// Whether no intermediate result of a scan overflows.
+  static bool can_hold(double largest) { return largest <= kMostHeight; }
+
+  /// Requires: can_hold().
+  RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
+                  const base::Progress* progress);
+  void put(const CellSample& sample) { heights_[index(sample.column, sample.row)] = sample.z; }
+
+ private:
+  static constexpr double kMostHeight = 0x1p+400;
+
+  Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  Scan judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const;
+  std::optional<double> height(SampleIndex cell) const override;
+
+  std::vector<double> heights_;  // NaN: no sample
+};
+
+}  // namespace tin::simplify

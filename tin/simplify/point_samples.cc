@@ -1,0 +1,123 @@
+#include "tin/simplify/point_samples.h"
+
+#include <algorithm>
+
+#include "tin/base/check.h"
+#include "tin/simplify/ranking.h"
+
+namespace tin::simplify {
+
+using exact::Point;
+
+struct PointSamples::Query {
+  std::array<Point, 3> corners;  // counter-clockwise
+  Box box;
+  Facet facet;
+  double tolerance;
+  Depth depth;
+  Scan found;
+};
+
+PointSamples::PointSamples(std::vector<Facet::Corner> samples, SampleIndex first,
+                           const base::Progress* progress)
+    : samples_(std::move(samples)), first_(first), progress_(progress) {
+  if (samples_.empty()) return;
+  // Sorted first, so that the tree depends on the set alone.
+  std::sort(samples_.begin(), samples_.end(), [](const auto& l, const auto& r) { return l.at < r.at; });
+  build(0, 0, samples_.size());
+}
+
+void PointSamples::build(std::size_t node, std::size_t begin, std::size_t end) {
+  if (progress_ != nullptr && progress_->cancelled()) return;
+  Box box{samples_[begin].at, samples_[begin].at};
+  for (std::size_t i = begin; i < end; ++i) {
+    const Point p = samples_[i].at;
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
+  }
+  if (node >= boxes_.size()) boxes_.resize(2 * node + 1);
+  boxes_[node] = box;
+  if (end - begin <= kLeaf) return;
+  const std::size_t middle = begin + (end - begin) / 2;
+  const bool by_x = box.high.x - box.low.x >= box.high.y - box.low.y;
+  const auto at = [this](std::size_t i) { return samples_.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(begin), at(middle), at(end), [by_x](const auto& l, const auto& r) {
+    return by_x ? l.at < r.at : std::pair(l.at.y, l.at.x) < std::pair(r.at.y, r.at.x);
+  });
+  build(2 * node + 1, begin, middle);
+  build(2 * node + 2, middle, end);
+}
+
+Scan PointSamples::scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const {
+  if (samples_.empty()) return {};
+  const bool left = exact::orientation(a.at, b.at, c.at) > 0;
+  const auto [low_x, high_x] = std::minmax({a.at.x, b.at.x, c.at.x});
+  const auto [low_y, high_y] = std::minmax({a.at.y, b.at.y, c.at.y});
+  Query query{{a.at, left ? b.at : c.at, left ? c.at : b.at},
+              {{low_x, low_y}, {high_x, high_y}},
+              Facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z}),
+              tolerance,
+              depth,
+              {}};
+  visit(query, 0, 0, samples_.size());
+  return query.found;
+}
+
+/// Goes through the samples of a node; false: the answer is known.
+bool PointSamples::visit(Query& query, std::size_t node, std::size_t begin, std::size_t end) const {
+  const Box& box = boxes_[node];
+  if (box.low.x > query.box.high.x || box.low.y > query.box.high.y || box.high.x < query.box.low.x ||
+      box.high.y < query.box.low.y) {
+    return true;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point from = query.corners[i], to = query.corners[i == 2 ? 0 : i + 1];
+    // The corner of the box that is furthest to the left of the side.
+    const Point furthest{to.y > from.y ? box.low.x : box.high.x, to.x > from.x ? box.high.y : box.low.y};
+    if (exact::orientation(from, to, furthest) < 0) return true;
+  }
+  if (end - begin <= kLeaf) return visit_leaf(query, begin, end);
+  if (progress_ != nullptr && progress_->cancelled()) return false;
+  const std::size_t middle = begin + (end - begin) / 2;
+  return visit(query, 2 * node + 1, begin, middle) && visit(query, 2 * node + 2, middle, end);
+}
+
+bool PointSamples::visit_leaf(Query& query, std::size_t begin, std::size_t end) const {
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto weights = query.facet.weights(samples_[i].at);
+    if (!weights) continue;
+    const auto verdict = query.facet.judge(*weights, samples_[i].z, query.tolerance);
+    keep_worse(query.found, {verdict.error, first_ + static_cast<SampleIndex>(i), !verdict.within});
+    if (query.found.over && query.depth == Depth::kFirstOver) return false;
+  }
+  return true;
+}
+
+Site PointSamples::site(SampleIndex sample) const {
+  const Facet::Corner& own = samples_[sample - first_];
+  return {own.at, -1, -1, own.z, sample};
+}
+
+SampleIndex PointSamples::find(Point p) const {
+  std::size_t node = 0, begin = 0, end = samples_.size();
+  std::vector<std::array<std::size_t, 3>> left;
+  for (;;) {
+    const Box& box = boxes_[node];
+    const bool inside = box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
+    if (inside && end - begin > kLeaf) {
+      const std::size_t middle = begin + (end - begin) / 2;
+      left.push_back({2 * node + 2, middle, end});
+      node = 2 * node + 1;
+      end = middle;
+      continue;
+    }
+    for (std::size_t i = begin; inside && i < end; ++i) {
+      if (samples_[i].at == p) return first_ + static_cast<SampleIndex>(i);
+    }
+    TIN_CHECK(!left.empty());
+    node = left.back()[0], begin = left.back()[1], end = left.back()[2];
+    left.pop_back();
+  }
+}
+
+}  // namespace tin::simplify

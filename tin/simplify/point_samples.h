@@ -1,0 +1,41 @@
+// Samples anywhere on the lattice, in a tree that clusters do not slow down.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tin/simplify/facet.h"
+#include "tin/simplify/samples.h"
+
+namespace tin::simplify {
+
+/// A balanced tree over the samples, split at medians along the longer side of each box; leaves of up to
+/// eight.
+class PointSamples final : public Samples {
+ public:
+  /// `first` is the index that the samples' own start from. Requires: distinct positions.
+  PointSamples(std::vector<Facet::Corner> samples, SampleIndex first, const base::Progress* progress);
+
+  Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  Site site(SampleIndex sample) const override;
+  SampleIndex find(exact::Point p) const override;
+
+  bool empty() const { return samples_.empty(); }
+
+ private:
+  struct Box {
+    exact::Point low, high;
+  };
+  struct Query;
+  void build(std::size_t node, std::size_t begin, std::size_t end);
+  bool visit(Query& query, std::size_t node, std::size_t begin, std::size_t end) const;
+  bool visit_leaf(Query& query, std::size_t begin, std::size_t end) const;
+
+  static constexpr std::size_t kLeaf = 8;
+  std::vector<Facet::Corner> samples_;
+  std::vector<Box> boxes_;  // of node i; its children are 2i + 1 and 2i + 2
+  SampleIndex first_;
+  const base::Progress* progress_;
+};
+
+}  // namespace tin::simplify
