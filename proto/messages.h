@@ -33,8 +33,7 @@ struct Position2 {
   friend bool operator==(const Position2&, const Position2&) = default;
 };
 
-// Requests
-// ----------------------------------------------------------------------------------------------------
+// Requests ------------------------------------------------------------------------
 
 /// Ids that clients may choose for a TIN: ^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$
 bool is_tin_id(std::string_view id);
@@ -99,8 +98,7 @@ struct SimplifyRequest {
 };
 tin::base::Result<SimplifyRequest> read_simplify_request(std::string_view body);
 
-// Answers
-// -----------------------------------------------------------------------------------------------------
+// Answers -------------------------------------------------------------------------
 
 struct Link {
   std::string href;
