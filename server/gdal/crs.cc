@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "server/gdal/crs_internal.h"
 #include "server/gdal/library.h"
 
 namespace server::gdal {

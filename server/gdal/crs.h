@@ -14,8 +14,6 @@
 #include "tin/base/result.h"
 #include "tin/frame/frame.h"
 
-class OGRSpatialReference;
-
 namespace server::gdal {
 
 /// A unit of heights: "metre", "foot", "US survey foot" or as its source calls it.
@@ -36,12 +34,6 @@ struct CrsInfo {
 /// no network, whatever the text is. Errors: kMalformed when it is none of these; kUnsupported for an unknown
 /// code and for a CRS that has no easting and northing or longitude and latitude in degrees.
 tin::base::Result<CrsInfo> read_crs(std::string_view text);
-
-/// The same for a CRS that GDAL found in a file.
-tin::base::Result<CrsInfo> describe_crs(const OGRSpatialReference& crs);
-
-/// The name of the CRS that `text` means, as `OGRSpatialReference` in GIS order. Errors: as read_crs().
-tin::base::Result<std::unique_ptr<OGRSpatialReference>> parse_crs(std::string_view text);
 
 /// A unit of heights by one of its many names ("m", "ft", "us-ft" ...); nothing for an unknown one.
 std::optional<VerticalUnit> vertical_unit(std::string_view name);

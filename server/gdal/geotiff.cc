@@ -13,7 +13,7 @@
 #include <system_error>
 #include <vector>
 
-#include "server/gdal/crs.h"
+#include "server/gdal/crs_internal.h"
 #include "server/gdal/library.h"
 
 namespace server::gdal {

@@ -2,6 +2,7 @@
 
 #include <ogr_spatialref.h>
 
+#include "server/gdal/crs_internal.h"
 #include "server/gdal/import_internal.h"
 #include "server/gdal/library.h"
 

@@ -24,9 +24,9 @@ namespace server::gdal {
 struct ImportOptions {
   std::string file_name;     // helps to recognise the format, and places an HGT; never opened
   std::string content_type;  // helps to recognise the format
-  std::string
-      format;       // insists on a format: geotiff, hgt, aaigrid, usgsdem, dted, csv, xyz, geojson, gpkg, fgb
-  std::string crs;  // replaces or supplies the file's CRS, in any form that read_crs() takes
+  /// Insists on a format: geotiff, hgt, aaigrid, usgsdem, dted, csv, xyz, geojson, gpkg or fgb.
+  std::string format;
+  std::string crs;          // replaces or supplies the file's CRS, in any form that read_crs() takes
   double resolution_x = 0;  // lattice steps in CRS units; 0: about 1 mm on the ground
   double resolution_y = 0;
   std::string layer;                       // vector files: the layer; empty: the first with points
@@ -49,8 +49,7 @@ struct Import {
 /// to the file without its neighbours, and no network, VRT or sidecar file can be reached by what it says.
 ///
 /// Rasters: band 1, pixel centres, scale and offset applied; pixels that are nodata, masked, not finite or
-/// beyond
-/// +-1e30 (undeclared fill values) are void. Rows may run north to south or south to north.
+/// larger than 1e30 (undeclared fill values) are void. Rows may run north to south or south to north.
 /// Points: columns or fields by their usual names, else the first three numeric columns; GeoJSON is CRS84
 /// unless it says otherwise, and columns called longitude and latitude are too.
 ///

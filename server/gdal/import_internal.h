@@ -10,6 +10,8 @@
 #include "server/gdal/import.h"
 #include "server/gdal/workspace.h"
 
+class OGRSpatialReference;
+
 namespace server::gdal {
 
 /// One import under way.

@@ -1,7 +1,7 @@
 #include <fstream>
 
 #include "server/gdal/delimited_internal.h"
-#include "support.h"
+#include "tests/server/gdal/support.h"
 
 namespace server::gdal::testing {
 namespace {

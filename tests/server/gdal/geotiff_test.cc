@@ -8,7 +8,7 @@
 #include <iterator>
 #include <limits>
 
-#include "support.h"
+#include "tests/server/gdal/support.h"
 
 namespace server::gdal::testing {
 namespace {

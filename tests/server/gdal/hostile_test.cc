@@ -13,7 +13,7 @@
 
 #include "server/gdal/crs.h"
 #include "server/gdal/library.h"
-#include "support.h"
+#include "tests/server/gdal/support.h"
 
 namespace server::gdal::testing {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support.h"
+#include "tests/server/gdal/support.h"
 
 namespace server::gdal::testing {
 namespace {

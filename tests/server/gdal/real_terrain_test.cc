@@ -1,7 +1,7 @@
 // Real elevation data, where it is there (TINSMITH_TERRAIN): counts and values as its manifest gives them.
 #include <algorithm>
 
-#include "support.h"
+#include "tests/server/gdal/support.h"
 
 namespace server::gdal::testing {
 namespace {

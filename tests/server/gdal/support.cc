@@ -1,4 +1,4 @@
-#include "support.h"
+#include "tests/server/gdal/support.h"
 
 #include <cpl_string.h>
 #include <gdal_priv.h>

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "support.h"
+#include "tests/server/gdal/support.h"
 
 namespace server::gdal::testing {
 namespace {
