@@ -47,7 +47,7 @@ void write_simplify_summary(JsonWriter& json) {
           "Takes vertices away as long as every source sample stays within a vertical tolerance, or until a "
           "number of vertices is reached.");
   json.key("version").string("1.0.0");
-  json.key("jobControlOptions").begin_array().string("async-execute").string("dismiss").end_array();
+  json.key("jobControlOptions").begin_array().string("sync-execute").string("async-execute").string("dismiss").end_array();
   json.key("outputTransmission").begin_array().string("value").end_array();
 }
 

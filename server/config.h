@@ -30,7 +30,7 @@ struct LimitConfig {
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;
   std::int64_t positions_per_request = 1'000'000;
-  std::int64_t page_size = 100;         // when a request does not say
+  std::int64_t page_size = 1000;        // when a request does not say
   std::int64_t page_size_max = 10'000;  // the most that it may say; not less than page_size
   friend bool operator==(const LimitConfig&, const LimitConfig&) = default;
 };

@@ -31,7 +31,7 @@ enum class BodyKind {
 struct Route {
   Method method = Method::kGet;
   std::string pattern;             // "/tins/{tin}/edits"
-  std::vector<std::string> query;  // the parameters that the resource knows
+  std::vector<std::string> query = {};  // the parameters that the resource knows
   BodyKind body = BodyKind::kNone;
   std::uint64_t body_limit = 0;  // bytes; 0: the server's own limit for that kind of body
   Handler handler;

@@ -8,8 +8,16 @@ namespace tin::base {
 /// Shared between one worker, which reports, and anyone who watches or cancels. Thread-safe.
 class Progress {
  public:
-  /// `fraction` of the work done, 0..1.
-  void report(double fraction) { fraction_.store(fraction, std::memory_order_relaxed); }
+  /// `fraction` of the present phase done, 0..1; without phases, of the work.
+  void report(double fraction) {
+    fraction_.store(phase_begin_ + fraction * (phase_end_ - phase_begin_), std::memory_order_relaxed);
+  }
+  /// What is reported from now on is a part of the whole, from `begin` to `end`. For the worker.
+  void begin_phase(double begin, double end) {
+    phase_begin_ = begin;
+    phase_end_ = end;
+    report(0);
+  }
   double fraction() const { return fraction_.load(std::memory_order_relaxed); }
 
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
@@ -17,6 +25,8 @@ class Progress {
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
 
  private:
+  double phase_begin_ = 0;
+  double phase_end_ = 1;
   std::atomic<double> fraction_{0};
   std::atomic<bool> cancelled_{false};
 };

@@ -78,6 +78,16 @@ frame::Frame read_frame(Reader& in) {
   return frame;
 }
 
+std::array<double, 2> read_open_resolution(Reader& in, terrain::VertexId next_id) {
+  std::array<double, 2> resolution{};
+  for (double& value : resolution) {
+    value = in.f64();
+    in.require(std::isfinite(value) && value >= 0, "the resolution of an open frame makes no sense");
+  }
+  in.require(next_id.value() == 1, "the frame of a terrain that had vertices is open");
+  return resolution;
+}
+
 void write_vertices(Writer& out, const Checkpoint& checkpoint) {
   out.varint(checkpoint.vertices.size());
   std::uint64_t previous = 0;
@@ -203,6 +213,11 @@ std::string encode_checkpoint(const Checkpoint& checkpoint) {
   out.varint(checkpoint.next_id.value());
   out.u8(static_cast<std::uint8_t>(checkpoint.duplicates));
   write_frame(out, checkpoint.frame);
+  out.u8(checkpoint.open_resolution ? 1 : 0);
+  if (checkpoint.open_resolution) {
+    TIN_CHECK(checkpoint.next_id.value() == 1);
+    for (const double resolution : *checkpoint.open_resolution) out.f64(resolution);
+  }
   write_vertices(out, checkpoint);
   out.u8(checkpoint.grid ? 1 : 0);
   if (checkpoint.grid) write_grid(out, *checkpoint.grid);
@@ -220,6 +235,7 @@ base::Result<Checkpoint> decode_checkpoint(std::string_view bytes) {
   in.require(duplicates < kDuplicatePolicies, "an unknown policy for duplicates");
   checkpoint.duplicates = static_cast<terrain::Duplicates>(duplicates);
   checkpoint.frame = read_frame(in);
+  if (read_flag(in)) checkpoint.open_resolution = read_open_resolution(in, checkpoint.next_id);
   checkpoint.vertices = read_vertices(in, checkpoint.next_id);
   if (read_flag(in)) checkpoint.grid = std::make_shared<const SourceGrid>(read_grid(in));
   in.finish();

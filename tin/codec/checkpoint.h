@@ -1,8 +1,10 @@
 // Checkpoints: the bytes of a whole terrain at one revision. Specified in FORMAT.md.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +27,9 @@ struct Checkpoint {
   terrain::VertexId next_id{1};
   terrain::Duplicates duplicates = terrain::Duplicates::kReplace;
   frame::Frame frame;
+  /// Set while the frame is provisional: it will be fitted to the first vertices that arrive, with these lattice steps in x
+  /// and y (0: to be chosen). Only a terrain that never had a vertex has it.
+  std::optional<std::array<double, 2>> open_resolution;
   std::vector<terrain::Vertex> vertices;  // by ascending id
   std::shared_ptr<const terrain::SourceGrid> grid;
 };

@@ -218,6 +218,24 @@ std::optional<Vertex> Terrain::vertex(VertexId id) const {
   return Vertex{id, mesh().point(*slot), z(*slot)};
 }
 
+std::vector<Vertex> Terrain::vertices_by_id(std::span<const VertexId> without) const {
+  std::vector<Vertex> vertices;
+  vertices.reserve(vertex_count());
+  auto skip = without.begin();
+  for (auto id = ids_.first_from(VertexId(0)); id; id = ids_.first_from(VertexId(id->value() + 1))) {
+    while (skip != without.end() && *skip < *id) ++skip;
+    if (skip == without.end() || *skip != *id) vertices.push_back(*vertex(*id));
+  }
+  return vertices;
+}
+
+Terrain Terrain::without(std::span<const VertexId> ids) const {
+  auto rest = restore(frame_, vertices_by_id(ids), next_id_);
+  TIN_CHECK(rest.ok());
+  rest->set_source_grid(source_grid_);
+  return std::move(*rest);
+}
+
 std::optional<Box> Terrain::bounds() const {
   if (vertex_count() == 0) return std::nullopt;
   Box box{{exact::kLatticeHalf, exact::kLatticeHalf}, {-exact::kLatticeHalf, -exact::kLatticeHalf}};

@@ -79,6 +79,12 @@ class Terrain {
   /// The id that the next insertion will get.
   VertexId next_id() const { return next_id_; }
 
+  /// The vertices by ascending id, but for those in `without` (ascending).
+  std::vector<Vertex> vertices_by_id(std::span<const VertexId> without = {}) const;
+  /// What is left when the vertices of these ids (ascending) are removed, built anew: the same terrain as by removing them one by
+  /// one, sooner when they are many.
+  Terrain without(std::span<const VertexId> ids) const;
+
   std::string digest() const { return hash_.digest(frame_); }
   /// O(n) each; empty terrain: nothing.
   std::optional<Box> bounds() const;

@@ -1,0 +1,63 @@
+// The landing page, the contract, conformance and health.
+#include <array>
+
+#include "proto/messages.h"
+#include "proto/openapi.h"
+#include "server/api/answer.h"
+#include "server/api/routes.h"
+#include "server/version.h"
+#include "server/web/pages.h"
+
+namespace server::api {
+namespace {
+
+constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
+
+/// Browsers ask for HTML first; programs for anything or for JSON.
+bool wants_html(const Request& request) {
+  const std::string accept = http::lower_case(request.header("accept"));
+  const auto html = accept.find("text/html"), json = accept.find("json");
+  return html != std::string::npos && (json == std::string::npos || html < json);
+}
+
+Result<Response> landing(const Request& request) {
+  if (wants_html(request)) {
+    return Response{200, {{"Content-Type", "text/html; charset=utf-8"}, {"Vary", "Accept"}}, std::string(web::index_html())};
+  }
+  proto::Landing page{"Tinsmith", "A server for adaptive terrain TINs: canonical Delaunay triangulations that are edited while they are served.",
+                      {{"/", "self", std::string(kJson), "This document"},
+                       {"/", "alternate", "text/html", "The terrains in a browser"},
+                       {"/api", "service-desc", std::string(kOpenApiType), "The contract (OpenAPI 3.0)"},
+                       {"/conformance", "conformance", std::string(kJson), "Conformance classes"},
+                       {"/tins", "items", std::string(kJson), "The TINs"},
+                       {"/processes", "http://www.opengis.net/def/rel/ogc/1.0/processes", std::string(kJson), "Processes"},
+                       {"/jobs", "http://www.opengis.net/def/rel/ogc/1.0/job-list", std::string(kJson), "Jobs"}}};
+  Response response = json_answer(proto::landing_json(page));
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
+Result<Response> conformance(const Request&) {
+  static const std::array<std::string, 4> classes{
+      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
+      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/landing-page",
+      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/json",
+      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/oas30",
+  };
+  return json_answer(proto::conformance_json(classes));
+}
+
+}  // namespace
+
+void add_landing(http::Router& router) {
+  router.add({.method = http::Method::kGet, .pattern = "/", .handler = guarded(landing)});
+  router.add({.method = http::Method::kGet, .pattern = "/conformance", .handler = guarded(conformance)});
+  router.add({.method = http::Method::kGet, .pattern = "/healthz", .handler = guarded([](Request&) -> Result<Response> {
+                return json_answer(proto::health_json("ok", version()));
+              })});
+  router.add({.method = http::Method::kGet, .pattern = "/api", .handler = guarded([](Request&) -> Result<Response> {
+                return Response{200, {{"Content-Type", std::string(kOpenApiType)}}, std::string(proto::openapi_json())};
+              })});
+}
+
+}  // namespace server::api

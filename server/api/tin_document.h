@@ -1,0 +1,14 @@
+// The document of a TIN, shared by the resources that answer with it.
+#pragma once
+
+#include "proto/messages.h"
+#include "server/api/answer.h"
+
+namespace server::api {
+
+proto::TinDocument tin_document(const app::Tin& tin);
+
+/// 201 with Location, ETag and the document.
+Response created_answer(const app::Tin& tin, const Request& request);
+
+}  // namespace server::api

@@ -1,0 +1,134 @@
+#include "server/api/upload.h"
+
+#include "proto/bbox.h"
+#include "proto/crs_uri.h"
+#include "proto/messages.h"
+#include "server/api/job_answer.h"
+#include "server/api/tin_document.h"
+#include "server/app/import.h"
+
+namespace server::api {
+
+using tin::base::Code;
+using tin::base::error;
+
+namespace {
+
+/// "0.5" for both axes, or "0.5,0.25".
+Result<std::array<double, 2>> parse_resolution(const std::string& text) {
+  const auto comma = text.find(',');
+  const auto x = proto::parse_number(text.substr(0, comma), "query:resolution");
+  if (!x) return x.error();
+  auto y = x;
+  if (comma != std::string::npos) y = proto::parse_number(text.substr(comma + 1), "query:resolution");
+  if (!y) return y.error();
+  if (!(*x > 0) || !(*y > 0)) return error(Code::kInvalidValue, "A resolution must be greater than 0.", "query:resolution");
+  return std::array<double, 2>{*x, *y};
+}
+
+Result<app::ImportRequest> read_request(const Context& context, const Request& request) {
+  app::ImportRequest import;
+  import.title = request.query_value("title").value_or("");
+  if (const auto id = request.query_value("id")) {
+    if (!proto::is_tin_id(*id)) {
+      return error(Code::kInvalidValue, "An id has 1 to 64 letters, digits, '-' and '_', and begins with a letter or digit.", "query:id");
+    }
+    import.id = *id;
+  }
+  if (const auto text = request.query_value("duplicates")) {
+    const auto policy = proto::parse_duplicates(*text, "query:duplicates");
+    if (!policy) return policy.error();
+    import.duplicates = *policy;
+  }
+  gdal::ImportOptions& options = import.options;
+  options.file_name = disposition_file_name(request.header("content-disposition"));
+  options.content_type = media_type(request);
+  options.format = request.query_value("format").value_or("");
+  options.layer = request.query_value("layer").value_or("");
+  options.z_field = request.query_value("z-field").value_or("");
+  options.max_samples = static_cast<std::uint64_t>(context.config.limits.vertices_per_tin);
+  options.max_pixels = static_cast<std::uint64_t>(context.config.limits.raster_pixels);
+  if (const auto crs = request.query_value("crs")) {
+    const auto name = proto::parse_crs(*crs, "query:crs");
+    if (!name) return name.error();
+    options.crs = *name;
+  }
+  if (const auto text = request.query_value("resolution")) {
+    const auto resolution = parse_resolution(*text);
+    if (!resolution) return resolution.error();
+    options.resolution_x = (*resolution)[0];
+    options.resolution_y = (*resolution)[1];
+  }
+  return import;
+}
+
+/// Removes the file when the last copy goes: a job may be dismissed before it ever runs.
+struct OwnedFile {
+  explicit OwnedFile(std::filesystem::path p) : path(std::move(p)) {}
+  OwnedFile(const OwnedFile&) = delete;
+  OwnedFile& operator=(const OwnedFile&) = delete;
+  ~OwnedFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+  const std::filesystem::path path;
+};
+
+Result<Response> import_as_job(Context& context, Request& request, app::ImportRequest import) {
+  auto file = std::make_shared<OwnedFile>(request.release_body_file());
+  const std::string what = import.options.file_name.empty() ? "an upload" : import.options.file_name;
+  auto job = context.jobs.submit(
+      "import", what, [&context, file, import = std::move(import)](tin::base::Progress& progress) -> Result<std::string> {
+        const auto made = app::import_tin(context.catalogue, file->path, import, progress);
+        if (!made) return made.error();
+        return proto::tin_json(tin_document(**made));
+      });
+  if (!job) return job.error();
+  return job_accepted_answer(context.jobs, *job);
+}
+
+class UploadSlot {
+ public:
+  explicit UploadSlot(std::counting_semaphore<>& slots) : slots_(slots), taken_(slots.try_acquire()) {}
+  ~UploadSlot() {
+    if (taken_) slots_.release();
+  }
+  UploadSlot(const UploadSlot&) = delete;
+  UploadSlot& operator=(const UploadSlot&) = delete;
+  bool taken() const { return taken_; }
+
+ private:
+  std::counting_semaphore<>& slots_;
+  bool taken_;
+};
+
+}  // namespace
+
+std::string disposition_file_name(std::string_view field) {
+  const std::string lower = http::lower_case(field);
+  auto at = lower.find("filename=");
+  if (at == std::string::npos) return "";
+  at += 9;
+  std::string name;
+  if (at < field.size() && field[at] == '"') {
+    name = field.substr(at + 1, field.find('"', at + 1) - at - 1);
+  } else {
+    name = field.substr(at, field.find_first_of("; ", at) - at);
+  }
+  return name.substr(name.find_last_of("/\\") + 1);
+}
+
+Result<Response> create_from_upload(Context& context, Request& request) {
+  auto import = read_request(context, request);
+  if (!import) return import.error();
+  if (auto room = context.catalogue.check_room(import->id); !room) return room.error();
+  if (prefers_async(request)) return import_as_job(context, request, std::move(*import));
+  const UploadSlot slot(context.uploads);
+  if (!slot.taken()) return error(Code::kTooMany, "Too many files are being read; try again, or ask with Prefer: respond-async.");
+  tin::base::Progress progress;
+  const auto made = app::import_tin(context.catalogue, request.body_file, *import, progress);
+  if (!made) return made.error();
+  return created_answer(**made, request);
+}
+
+}  // namespace server::api

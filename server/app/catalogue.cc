@@ -1,0 +1,126 @@
+#include "server/app/catalogue.h"
+
+#include <chrono>
+#include <random>
+
+#include "server/obs/log.h"
+#include "tin/codec/change.h"
+
+namespace server::app {
+
+using tin::base::Code;
+using tin::base::error;
+using tin::base::Result;
+
+std::int64_t now_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+namespace {
+
+/// 60 random bits in letters and digits.
+std::string make_up_id() {
+  std::random_device device;
+  std::string id = "tin-";
+  for (int i = 0; i < 12; ++i) id += "0123456789abcdefghijkmnpqrstuvwx"[device() % 32];
+  return id;
+}
+
+tin::base::Error broken(const store::TinRecord& record, const tin::base::Error& cause) {
+  return error(cause.code, "TIN \"" + record.id + "\" cannot be loaded: " + cause.message);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store> store, const LimitConfig& limits) {
+  std::unique_ptr<Catalogue> catalogue(new Catalogue(std::move(store), limits));
+  auto records = catalogue->store_->list();
+  if (!records) return records.error();
+  for (const store::TinRecord& record : *records) {
+    if (auto loaded = catalogue->load(record); !loaded) return broken(record, loaded.error());
+  }
+  return catalogue;
+}
+
+Result<void> Catalogue::load(const store::TinRecord& record) {
+  auto stored = store_->load(record.id);
+  if (!stored) return stored.error();
+  auto state = Tin::decode(stored->tin, stored->checkpoint);
+  if (!state) return state.error();
+  for (const store::JournalRow& row : stored->journal) {
+    const auto change = tin::codec::decode_change(row.record);
+    if (!change) return change.error();
+    if (auto replayed = state->terrain.replay(*change); !replayed) return replayed;
+    state->revision = row.revision;
+  }
+  obs::log_info("tin_loaded", {{"tin", record.id},
+                               {"vertices", state->terrain.vertex_count()},
+                               {"revision", state->revision},
+                               {"digest", state->terrain.digest()}});
+  tins_[record.id] = std::make_shared<Tin>(std::move(*state), *store_, static_cast<std::size_t>(limits_.vertices_per_tin));
+  return {};
+}
+
+std::vector<std::shared_ptr<Tin>> Catalogue::list() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::shared_ptr<Tin>> out;
+  out.reserve(tins_.size());
+  for (const auto& [id, tin] : tins_) out.push_back(tin);
+  return out;
+}
+
+Result<std::shared_ptr<Tin>> Catalogue::find(std::string_view id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = tins_.find(id);
+  if (found == tins_.end()) return error(Code::kNotFound, "There is no TIN \"" + std::string(id) + "\".");
+  return found->second;
+}
+
+Result<void> Catalogue::check_room(const std::optional<std::string>& id) const {
+  const std::lock_guard lock(mutex_);
+  return check_room_locked(id);
+}
+
+Result<void> Catalogue::check_room_locked(const std::optional<std::string>& id) const {
+  if (id && (tins_.contains(*id) || being_created_.contains(*id))) {
+    return error(Code::kConflict, "There is a TIN \"" + *id + "\" already.");
+  }
+  if (tins_.size() + being_created_.size() >= static_cast<std::size_t>(limits_.tins)) {
+    return error(Code::kTooMany, "This server holds at most " + std::to_string(limits_.tins) + " TINs.");
+  }
+  return {};
+}
+
+Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
+  if (tin.terrain.vertex_count() > static_cast<std::size_t>(limits_.vertices_per_tin)) {
+    return error(Code::kTooLarge, "A TIN may have at most " + std::to_string(limits_.vertices_per_tin) + " vertices.");
+  }
+  const std::string id = tin.id.value_or(make_up_id());
+  const std::string checkpoint = Tin::encode(tin.terrain, tin.duplicates, tin.open_resolution, 1);
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto room = check_room_locked(id); !room) return room.error();
+    being_created_.insert(id);
+  }
+  TinState state{{id, tin.title.empty() ? id : tin.title, now_ms()}, std::move(tin.terrain), tin.duplicates, tin.open_resolution, 1};
+  const auto stored = store_->create_tin(state.record, state.revision, checkpoint);
+  const std::lock_guard lock(mutex_);
+  being_created_.erase(id);
+  if (!stored) return stored.error();
+  auto made = std::make_shared<Tin>(std::move(state), *store_, static_cast<std::size_t>(limits_.vertices_per_tin));
+  tins_[id] = made;
+  return made;
+}
+
+Result<void> Catalogue::remove(std::string_view id) {
+  std::shared_ptr<Tin> removed;  // freed after the lock
+  const std::lock_guard lock(mutex_);
+  const auto found = tins_.find(id);
+  if (found == tins_.end()) return error(Code::kNotFound, "There is no TIN \"" + std::string(id) + "\".");
+  if (auto gone = store_->remove_tin(id); !gone) return gone;
+  removed = std::move(found->second);
+  tins_.erase(found);
+  return {};
+}
+
+}  // namespace server::app

@@ -1,0 +1,61 @@
+// The TINs that are served, by id, each with its place in the store.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/app/tin.h"
+#include "server/config.h"
+#include "server/store/store.h"
+#include "tin/base/result.h"
+
+namespace server::app {
+
+/// Thread-safe.
+class Catalogue {
+ public:
+  /// Loads every TIN of the store. Errors: kStorage, kMalformed, kUnsupported: then the data needs a person.
+  static tin::base::Result<std::unique_ptr<Catalogue>> open(std::unique_ptr<store::Store> store, const LimitConfig& limits);
+
+  /// By id.
+  std::vector<std::shared_ptr<Tin>> list() const;
+  /// Errors: kNotFound.
+  tin::base::Result<std::shared_ptr<Tin>> find(std::string_view id) const;
+
+  struct NewTin {
+    std::optional<std::string> id;  // nothing: one is made up
+    std::string title;
+    tin::terrain::Terrain terrain;
+    tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
+    OpenResolution open_resolution;
+  };
+  /// Stores and serves a new TIN, at revision 1. Errors: kConflict (id taken), kTooLarge (vertices), kTooMany (TINs), kStorage.
+  tin::base::Result<std::shared_ptr<Tin>> create(NewTin tin);
+  /// Whether create() would refuse for the id or the number of TINs: asked before long work. Errors: as create().
+  tin::base::Result<void> check_room(const std::optional<std::string>& id) const;
+  /// Errors: kNotFound, kStorage.
+  tin::base::Result<void> remove(std::string_view id);
+
+ private:
+  Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits) : store_(std::move(store)), limits_(limits) {}
+  tin::base::Result<void> load(const store::TinRecord& record);
+  tin::base::Result<void> check_room_locked(const std::optional<std::string>& id) const;
+
+  std::unique_ptr<store::Store> store_;
+  const LimitConfig limits_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Tin>, std::less<>> tins_;
+  std::set<std::string, std::less<>> being_created_;
+};
+
+/// Unix time in milliseconds.
+std::int64_t now_ms();
+
+}  // namespace server::app

@@ -1,0 +1,26 @@
+// From an uploaded file to a served TIN.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "server/app/catalogue.h"
+#include "server/gdal/import.h"
+
+namespace server::app {
+
+struct ImportRequest {
+  std::optional<std::string> id;
+  std::string title;
+  tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
+  gdal::ImportOptions options;
+};
+
+/// Reads the file, triangulates its samples and stores the TIN. Reports progress over all of it.
+/// Errors: as gdal::import_file, Terrain::build and Catalogue::create; then nothing is left behind.
+tin::base::Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
+                                                   const ImportRequest& request, tin::base::Progress& progress);
+
+}  // namespace server::app

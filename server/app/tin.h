@@ -1,0 +1,142 @@
+// One TIN being served: its writer, and its readers.
+//
+// Short reads (an elevation, a page) run under a shared lock. Long ones (an export, a simplification) take a version(): an
+// immutable terrain that costs nothing as long as nobody edits. The first edit while a version is out copies the
+// terrain, at memory speed, and goes on with the copy; so no reader holds up an editor for longer than that. An
+// edit is journaled durably before readers see it.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/app/fair_mutex.h"
+#include "server/store/store.h"
+#include "tin/base/result.h"
+#include "tin/terrain/terrain.h"
+
+namespace server::app {
+
+using VertexId = tin::terrain::VertexId;
+
+/// Edits with positions in the TIN's CRS. The frame turns them into lattice points.
+struct InsertAt {
+  double x = 0, y = 0, z = 0;
+};
+struct MoveTo {
+  VertexId id;
+  double x = 0, y = 0;
+};
+using WorldEdit = std::variant<InsertAt, tin::terrain::Remove, MoveTo, tin::terrain::SetZ>;
+
+/// What becomes of a TIN's frame when its first vertices arrive: fitted to them with these lattice steps (0: chosen).
+using OpenResolution = std::optional<std::array<double, 2>>;
+
+struct Edited {
+  std::uint64_t revision = 0;
+  std::vector<VertexId> ids;  // one per edit
+};
+
+/// What the document of a TIN says of its content.
+struct Summary {
+  std::uint64_t revision = 0;
+  std::size_t vertex_count = 0;
+  std::size_t triangle_count = 0;
+  std::optional<tin::terrain::Box> bounds;
+  std::optional<tin::terrain::ZRange> z_range;
+  std::string digest;
+};
+
+/// An immutable terrain at one revision; keep it for as long as you read it, and no longer.
+struct Version {
+  std::shared_ptr<const tin::terrain::Terrain> terrain;
+  std::uint64_t revision = 0;
+};
+
+/// All that a Tin begins with.
+struct TinState {
+  store::TinRecord record;
+  tin::terrain::Terrain terrain;
+  tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
+  OpenResolution open_resolution;
+  std::uint64_t revision = 1;
+};
+
+/// Thread-safe.
+class Tin {
+ public:
+  Tin(TinState state, store::Store& store, std::size_t max_vertices);
+
+  const std::string& id() const { return record_.id; }
+  const std::string& title() const { return record_.title; }
+  /// Tells this TIN from a later one of the same id.
+  std::int64_t created_ms() const { return record_.created_ms; }
+  tin::terrain::Duplicates duplicates() const { return duplicates_; }
+
+  /// Calls f(const Terrain&, revision) under the shared lock: for what takes well under a millisecond per thousand vertices asked.
+  template <class F>
+  auto read(F&& f) const {
+    const std::shared_lock lock(mutex_);
+    return f(std::as_const(*terrain_), revision_);
+  }
+  Version version() const;
+  Summary summary() const;
+
+  /// Remembers the present version for a while, so that pages can go on from it when edits arrive; see page_version().
+  void keep_for_pages(const Version& version);
+  /// The version of that revision: the present one or one kept for pages. Errors: kGone.
+  tin::base::Result<Version> page_version(std::uint64_t revision) const;
+
+  /// Applies all edits or none; durable when it returns. `expected` is the revision that the client saw, if it said.
+  /// Errors: kPrecondition; as frame::to_lattice and Terrain::apply, at "/i"; kTooLarge (vertices per TIN); kStorage.
+  tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, std::optional<std::uint64_t> expected,
+                                 const store::RevisionInfo& info);
+
+  /// Removes the vertices as one revision; those that are gone meanwhile, or changed since `seen`, stay out of it.
+  /// Errors: kStorage.
+  tin::base::Result<Edited> remove_vertices(const Version& seen, std::span<const VertexId> ids,
+                                            const store::RevisionInfo& info);
+
+  /// A state as a checkpoint, and back.
+  static std::string encode(const tin::terrain::Terrain& terrain, tin::terrain::Duplicates duplicates,
+                            const OpenResolution& open_resolution, std::uint64_t revision);
+  static tin::base::Result<TinState> decode(const store::TinRecord& record, std::string_view checkpoint);
+
+ private:
+  using Terrain = tin::terrain::Terrain;
+
+  void own_terrain();  // copies it if a version is out; with mutex_ held
+  tin::base::Result<void> fit_open_frame(std::span<const WorldEdit> edits);
+  tin::base::Result<std::vector<tin::terrain::Edit>> to_lattice(std::span<const WorldEdit> edits) const;
+  tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
+
+  const store::TinRecord record_;
+  const tin::terrain::Duplicates duplicates_;
+  store::Store& store_;
+  const std::size_t max_vertices_;
+
+  mutable FairSharedMutex mutex_;
+  std::shared_ptr<Terrain> terrain_;
+  mutable std::shared_ptr<std::atomic<int>> versions_out_;  // of terrain_
+  OpenResolution open_resolution_;
+  std::uint64_t revision_;
+
+  mutable std::mutex cache_mutex_;
+  mutable std::optional<Summary> summary_;
+  struct Kept {
+    Version version;
+    std::chrono::steady_clock::time_point until;
+  };
+  mutable std::vector<Kept> kept_;
+};
+
+}  // namespace server::app

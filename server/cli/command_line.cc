@@ -1,0 +1,28 @@
+#include "server/cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "server/cli/serve.h"
+#include "server/version.h"
+
+namespace server::cli {
+
+int run(int argc, char** argv) {
+  CLI::App app("Tinsmith: a server for adaptive terrain TINs", "tinsmith");
+  app.set_version_flag("--version", "tinsmith " + std::string(version()));
+  app.require_subcommand(1);
+  ServeArguments arguments;
+  auto* serving = app.add_subcommand("serve", "Serve TINs over HTTP until SIGTERM or SIGINT");
+  serving->add_option("--listen", arguments.listen, "Address and port, 127.0.0.1:8080 unless the configuration says otherwise; port 0 takes a free one");
+  serving->add_option("--data", arguments.data, "Folder of the TINs; made if it is not there");
+  serving->add_option("--config", arguments.config, "Configuration file (JSON); see deploy/config.example.json");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return serve(arguments);
+}
+
+}  // namespace server::cli
