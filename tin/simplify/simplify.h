@@ -60,7 +60,9 @@ struct Outcome {
 /// Errors:   kInvalidValue (no option, tolerance negative or not finite, max_vertices below what the hull
 /// needs: the
 ///           message says how many), kCancelled.
-/// Ensures:  the same set of vertices gives the same answer, whatever its history; `source` is not changed.
+/// Ensures:  the same set of vertices gives the same result, whatever its history (rmse up to rounding);
+/// `source` is
+///           not changed.
 /// Cost:     O(n log n) expected. Memory beyond the terrain: 4 bytes per raster cell where heights are whole
 /// multiples of
 ///           a power of two (8 otherwise), 20 per sample off the raster, and about 120 per vertex kept on the
