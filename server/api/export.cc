@@ -66,7 +66,7 @@ Result<Response> geojson(const app::Tin& tin, app::Version version, const Export
   std::optional<std::string> urn;
   if (!wanted.crs.empty()) {
     const auto crs = gdal::read_crs(wanted.crs);
-    if (!crs) return within("query:crs", crs.error());
+    if (!crs) return error(Code::kInvalidValue, crs.error().message, "query:crs");
     positions = Positions::between(frame.crs, crs->name, "query:crs");
     coordinates = crs->scale.geographic ? Coordinates::kDegrees : Coordinates::kProjected;
     if (crs->name != "EPSG:4326") urn = proto::crs_urn(crs->name);
@@ -140,14 +140,13 @@ Result<Response> export_tin(Context& context, const Request& request) {
   const std::string collection = request.query_value("collection").value_or("triangles");
   const auto kind = feature_kind(collection);
   if (!kind) return error(Code::kInvalidValue, "The collections are vertices and triangles.", "query:collection");
-  const auto format = request.query_value("f");
-  if (!format) return error(Code::kMalformed, "The parameter f is missing: geotiff or geojson.", "query:f");
-  if (*format != "geotiff" && *format != "geojson") {
+  const std::string format = request.query_value("f").value_or("geotiff");
+  if (format != "geotiff" && format != "geojson") {
     return error(Code::kInvalidValue, "The formats are geotiff and geojson.", "query:f");
   }
   app::Version version = (*tin)->version();
   const std::string tag = entity_tag(**tin, version.revision, request);
-  auto response = *format == "geotiff" ? geotiff(context, **tin, version, *wanted)
+  auto response = format == "geotiff" ? geotiff(context, **tin, version, *wanted)
                                        : geojson(**tin, std::move(version), *wanted, *kind);
   if (response) response->headers.emplace_back("ETag", tag);
   return response;

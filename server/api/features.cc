@@ -85,7 +85,8 @@ Result<PageRequest> read_page_request(const Context& context, const Request& req
 
 std::string page_href(const PageRequest& page, const std::optional<PageToken>& token) {
   std::string href = page.path + "?limit=" + std::to_string(page.limit);
-  if (!page.bbox_text.empty()) href += "&bbox=" + page.bbox_text;
+  if (!page.bbox_text.empty()) href += "&bbox=";
+  for (const char c : page.bbox_text) href += c == '+' ? "%2B" : std::string(1, c);  // "1e+5": a bare plus would be a space
   if (token) href += "&next=" + write_token(*token);
   return href;
 }
@@ -148,8 +149,7 @@ Result<Response> items(Context& context, const Request& request) {
 }
 
 /// The extent in CRS84, from the corners and edges of the extent in the TIN's CRS.
-std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin) {
-  const app::Summary summary = tin.summary();
+std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin, const app::Summary& summary) {
   if (!summary.bounds) return std::nullopt;
   const auto frame = tin.read([](const Terrain& terrain, std::uint64_t) { return terrain.frame(); });
   auto positions = Positions::to_geojson(frame);
@@ -170,14 +170,14 @@ std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin) {
   return std::array<double, 4>{*min_x, *min_y, *max_x, *max_y};
 }
 
-proto::CollectionDocument collection_document(const app::Tin& tin, FeatureKind kind) {
+proto::CollectionDocument collection_document(const app::Tin& tin, const app::Summary& summary, FeatureKind kind) {
   const bool vertices = kind == FeatureKind::kVertices;
   proto::CollectionDocument document;
   document.id = vertices ? "vertices" : "triangles";
   document.title = vertices ? "Vertices" : "Triangles";
   document.description = vertices ? "The vertices of the TIN: 3D points whose ids edits use"
                                   : "The triangles of the TIN: 3D polygons with their three vertex ids";
-  document.bbox = geojson_bbox(tin);
+  document.bbox = geojson_bbox(tin, summary);
   const std::string crs = tin.read([](const Terrain& terrain, std::uint64_t) { return terrain.frame().crs; });
   if (!crs.empty()) document.crs = {std::string(proto::kCrs84Uri)};
   document.storage_crs = proto::crs_uri(crs).value_or("");
@@ -190,10 +190,13 @@ proto::CollectionDocument collection_document(const app::Tin& tin, FeatureKind k
 Result<Response> collections(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
-  const std::vector<proto::CollectionDocument> documents{collection_document(**tin, FeatureKind::kVertices),
-                                                         collection_document(**tin, FeatureKind::kTriangles)};
+  const app::Summary summary = (*tin)->summary();
+  const std::vector<proto::CollectionDocument> documents{collection_document(**tin, summary, FeatureKind::kVertices),
+                                                         collection_document(**tin, summary, FeatureKind::kTriangles)};
   const std::vector<proto::Link> links{{request.path, "self", std::string(kJson), ""}};
-  return json_answer(proto::collections_json(documents, links));
+  Response response = json_answer(proto::collections_json(documents, links));
+  response.headers.emplace_back("ETag", entity_tag(**tin, summary.revision, request));
+  return response;
 }
 
 Result<Response> collection(Context& context, const Request& request) {
@@ -201,7 +204,10 @@ Result<Response> collection(Context& context, const Request& request) {
   if (!tin) return tin.error();
   const auto kind = feature_kind(request.path_parameter("collection"));
   if (!kind) return error(Code::kNotFound, "The collections are vertices and triangles.");
-  return json_answer(proto::collection_json(collection_document(**tin, *kind)));
+  const app::Summary summary = (*tin)->summary();
+  Response response = json_answer(proto::collection_json(collection_document(**tin, summary, *kind)));
+  response.headers.emplace_back("ETag", entity_tag(**tin, summary.revision, request));
+  return response;
 }
 
 }  // namespace

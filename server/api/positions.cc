@@ -21,7 +21,7 @@ Result<Positions> Positions::between(std::string_view from, std::string_view to,
   }
   if (from == to) return positions;
   auto transform = gdal::CrsTransform::create(from, to);
-  if (!transform) return error(transform.error().code, transform.error().message, std::move(where));
+  if (!transform) return error(Code::kInvalidValue, transform.error().message, std::move(where));
   positions.transform_ = std::make_unique<gdal::CrsTransform>(std::move(*transform));
   return positions;
 }

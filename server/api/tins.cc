@@ -97,7 +97,7 @@ Result<Frame> frame_of(const proto::CreateTin& message, app::OpenResolution& ope
   tin::frame::GroundScale scale;
   if (message.crs) {
     const auto crs = gdal::read_crs(*message.crs);
-    if (!crs) return within("/crs", crs.error());
+    if (!crs) return error(Code::kInvalidValue, crs.error().message, "/crs");
     frame.crs = crs->name;
     scale = crs->scale;
     if (crs->vertical) {

@@ -6,6 +6,7 @@
 #include "server/api/job_answer.h"
 #include "server/api/tin_document.h"
 #include "server/app/import.h"
+#include "server/gdal/crs.h"
 
 namespace server::api {
 
@@ -51,6 +52,7 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   if (const auto crs = request.query_value("crs")) {
     const auto name = proto::parse_crs(*crs, "query:crs");
     if (!name) return name.error();
+    if (const auto known = gdal::read_crs(*name); !known) return error(Code::kInvalidValue, known.error().message, "query:crs");
     options.crs = *name;
   }
   if (const auto text = request.query_value("resolution")) {

@@ -113,13 +113,11 @@ Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
 }
 
 Result<void> Catalogue::remove(std::string_view id) {
-  std::shared_ptr<Tin> removed;  // freed after the lock
+  const auto tin = find(id);
+  if (!tin) return tin.error();
+  if (auto retired = (*tin)->retire(); !retired) return retired;
   const std::lock_guard lock(mutex_);
-  const auto found = tins_.find(id);
-  if (found == tins_.end()) return error(Code::kNotFound, "There is no TIN \"" + std::string(id) + "\".");
-  if (auto gone = store_->remove_tin(id); !gone) return gone;
-  removed = std::move(found->second);
-  tins_.erase(found);
+  tins_.erase(tins_.find(id));  // still there: as long as it is, create() refuses the id
   return {};
 }
 

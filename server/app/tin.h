@@ -106,6 +106,10 @@ class Tin {
   tin::base::Result<Edited> remove_vertices(const Version& seen, std::span<const VertexId> ids,
                                             const store::RevisionInfo& info);
 
+  /// Removes the TIN from the store. Those who hold it still may read it; edits get kNotFound, so that none of them, and no job
+  /// that ends late, can reach a later TIN of the same id. Errors: kNotFound (it is gone already), kStorage.
+  tin::base::Result<void> retire();
+
   /// A state as a checkpoint, and back.
   static std::string encode(const tin::terrain::Terrain& terrain, tin::terrain::Duplicates duplicates,
                             const OpenResolution& open_resolution, std::uint64_t revision);
@@ -115,8 +119,7 @@ class Tin {
   using Terrain = tin::terrain::Terrain;
 
   void own_terrain();  // copies it if a version is out; with mutex_ held
-  tin::base::Result<void> fit_open_frame(std::span<const WorldEdit> edits);
-  tin::base::Result<std::vector<tin::terrain::Edit>> to_lattice(std::span<const WorldEdit> edits) const;
+  tin::base::Result<std::shared_ptr<Terrain>> fit_open_frame(std::span<const WorldEdit> edits) const;
   tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
 
   const store::TinRecord record_;
@@ -129,6 +132,7 @@ class Tin {
   mutable std::shared_ptr<std::atomic<int>> versions_out_;  // of terrain_
   OpenResolution open_resolution_;
   std::uint64_t revision_;
+  bool retired_ = false;
 
   mutable std::mutex cache_mutex_;
   mutable std::optional<Summary> summary_;

@@ -73,7 +73,9 @@ std::optional<Elevation> ElevationQuery::at(Point p) {
   const Slots corners = canonical_corners(mesh, t);
   if (is_void(p, corners)) return std::nullopt;
   const double z = where.kind == Location::Kind::kOnVertex ? terrain_.z(where.vertex) : interpolate(terrain_, corners, p);
-  return Elevation{z, {terrain_.id_of(corners[0]), terrain_.id_of(corners[1]), terrain_.id_of(corners[2])}};
+  Elevation found{z, {terrain_.id_of(corners[0]), terrain_.id_of(corners[1]), terrain_.id_of(corners[2])}};
+  std::rotate(found.triangle.begin(), std::min_element(found.triangle.begin(), found.triangle.end()), found.triangle.end());
+  return found;
 }
 
 bool ElevationQuery::is_void(Point p, const Slots& corners) const {

@@ -20,7 +20,7 @@ enum class Voids { kKeep, kFill };
 
 struct Elevation {
   double z = 0;  // in the frame's vertical unit
-  std::array<terrain::VertexId, 3> triangle;
+  std::array<terrain::VertexId, 3> triangle;  // counter-clockwise, the smallest id first
 };
 
 /// Answers queries one after another, each walk starting where the last ended. Borrows the terrain, which must
