@@ -14,7 +14,8 @@ Result<Positions> Positions::between(std::string_view from, std::string_view to,
   Positions positions;
   if (from == to) return positions;
   if (from.empty() || to.empty()) {
-    return error(Code::kInvalidValue, "The TIN has no CRS, so positions cannot be converted.", std::move(where));
+    return error(Code::kInvalidValue, "The TIN has no CRS, so positions cannot be converted.",
+                 std::move(where));
   }
   for (std::string_view* name : {&from, &to}) {
     if (*name == "OGC:CRS84") *name = kLonLat;
@@ -47,6 +48,8 @@ std::optional<proto::Position2> Positions::convert(proto::Position2 position) {
   return position;
 }
 
-bool geojson_in_degrees(const tin::frame::Frame& frame) { return !frame.crs.empty(); }
+bool geojson_in_degrees(const tin::frame::Frame& frame) {
+  return !frame.crs.empty();
+}
 
 }  // namespace server::api

@@ -21,11 +21,16 @@ namespace {
 
 constexpr std::size_t kKeptVersions = 2;
 constexpr std::chrono::minutes kKeptFor{5};
-constexpr std::size_t kRebuildShare = 4;  // removing more than 1/4 of the vertices: building what stays is faster
+constexpr std::size_t kRebuildShare =
+    4;  // removing more than 1/4 of the vertices: building what stays is faster
 
-std::string place(std::size_t index) { return "/" + std::to_string(index); }
+std::string place(std::size_t index) {
+  return "/" + std::to_string(index);
+}
 
-tin::base::Error gone(const std::string& id) { return error(Code::kNotFound, "The TIN \"" + id + "\" has been deleted."); }
+tin::base::Error gone(const std::string& id) {
+  return error(Code::kNotFound, "The TIN \"" + id + "\" has been deleted.");
+}
 
 Result<std::vector<Edit>> to_lattice(std::span<const WorldEdit> edits, const tin::frame::Frame& frame) {
   std::vector<Edit> out;
@@ -67,8 +72,11 @@ Tin::Tin(TinState state, store::Store& store, std::size_t max_vertices)
 Version Tin::version() const {
   const std::shared_lock lock(mutex_);
   versions_out_->fetch_add(1, std::memory_order_relaxed);
-  // The count, not the pointer's, tells the writer that the last reader is done: its release makes the reads happen before.
-  auto done = [terrain = terrain_, out = versions_out_](const Terrain*) { out->fetch_sub(1, std::memory_order_release); };
+  // The count, not the pointer's, tells the writer that the last reader is done: its release makes the reads
+  // happen before.
+  auto done = [terrain = terrain_, out = versions_out_](const Terrain*) {
+    out->fetch_sub(1, std::memory_order_release);
+  };
   return {std::shared_ptr<const Terrain>(terrain_.get(), std::move(done)), revision_};
 }
 
@@ -110,7 +118,8 @@ Result<Version> Tin::page_version(std::uint64_t revision) const {
   for (const Kept& kept : kept_) {
     if (kept.version.revision == revision) return kept.version;
   }
-  return error(Code::kGone, "Revision " + std::to_string(revision) + " is no longer kept; start again from the first page.");
+  return error(Code::kGone, "Revision " + std::to_string(revision) +
+                                " is no longer kept; start again from the first page.");
 }
 
 Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::optional<std::uint64_t> expected,
@@ -118,12 +127,15 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::optional<std::ui
   const std::unique_lock lock(mutex_);
   if (retired_) return gone(id());
   if (expected && *expected != revision_) {
-    return error(Code::kPrecondition, "The TIN is at revision " + std::to_string(revision_) + ", not " + std::to_string(*expected) + ".");
+    return error(Code::kPrecondition, "The TIN is at revision " + std::to_string(revision_) + ", not " +
+                                          std::to_string(*expected) + ".");
   }
-  // The first vertices of an open frame go into an empty terrain beside the present one: a refused edit leaves the frame open.
+  // The first vertices of an open frame go into an empty terrain beside the present one: a refused edit
+  // leaves the frame open.
   std::shared_ptr<Terrain> fitted;
   std::string empty_checkpoint;
-  const bool inserts = std::any_of(edits.begin(), edits.end(), [](const WorldEdit& e) { return std::holds_alternative<InsertAt>(e); });
+  const bool inserts = std::any_of(edits.begin(), edits.end(),
+                                   [](const WorldEdit& e) { return std::holds_alternative<InsertAt>(e); });
   if (open_resolution_ && inserts) {
     auto empty = fit_open_frame(edits);
     if (!empty) return empty.error();
@@ -181,8 +193,8 @@ Result<std::shared_ptr<Terrain>> Tin::fit_open_frame(std::span<const WorldEdit> 
       return error(Code::kNotFinite, "A coordinate is not a finite number.", place(i));
     }
     if (!extent) extent = tin::frame::Extent{insert->x, insert->y, insert->x, insert->y};
-    *extent = {std::min(extent->min_x, insert->x), std::min(extent->min_y, insert->y), std::max(extent->max_x, insert->x),
-               std::max(extent->max_y, insert->y)};
+    *extent = {std::min(extent->min_x, insert->x), std::min(extent->min_y, insert->y),
+               std::max(extent->max_x, insert->x), std::max(extent->max_y, insert->y)};
   }
   tin::frame::GroundScale scale;
   const auto& present = terrain_->frame();
@@ -199,8 +211,10 @@ Result<std::shared_ptr<Terrain>> Tin::fit_open_frame(std::span<const WorldEdit> 
   return std::make_shared<Terrain>(frame);
 }
 
-Result<Edited> Tin::remove_vertices(const Version& seen, std::span<const VertexId> ids, const store::RevisionInfo& info) {
-  // Most of a large removal is done beside the readers, on the version seen, and counts if that is still the present one.
+Result<Edited> Tin::remove_vertices(const Version& seen, std::span<const VertexId> ids,
+                                    const store::RevisionInfo& info) {
+  // Most of a large removal is done beside the readers, on the version seen, and counts if that is still the
+  // present one.
   std::shared_ptr<Terrain> rebuilt;
   if (ids.size() > seen.terrain->vertex_count() / kRebuildShare) {
     rebuilt = std::make_shared<Terrain>(seen.terrain->without(ids));
@@ -225,7 +239,8 @@ Result<Edited> Tin::remove_vertices(const Version& seen, std::span<const VertexI
     terrain_ = std::move(rebuilt);
     versions_out_ = std::make_shared<std::atomic<int>>(0);
     // Only a start made quicker: the revision is durable already.
-    const auto kept = store_.put_checkpoint(id(), revision_, encode(*terrain_, duplicates_, std::nullopt, revision_));
+    const auto kept =
+        store_.put_checkpoint(id(), revision_, encode(*terrain_, duplicates_, std::nullopt, revision_));
     if (!kept) obs::log_warning("checkpoint_failed", {{"tin", id()}, {"message", kept.error().message}});
   } else {
     own_terrain();
@@ -235,8 +250,8 @@ Result<Edited> Tin::remove_vertices(const Version& seen, std::span<const VertexI
   return edited;
 }
 
-std::string Tin::encode(const Terrain& terrain, tin::terrain::Duplicates duplicates, const OpenResolution& open_resolution,
-                        std::uint64_t revision) {
+std::string Tin::encode(const Terrain& terrain, tin::terrain::Duplicates duplicates,
+                        const OpenResolution& open_resolution, std::uint64_t revision) {
   tin::codec::Checkpoint checkpoint;
   checkpoint.revision = revision;
   checkpoint.digest = terrain.digest();
@@ -258,7 +273,8 @@ Result<TinState> Tin::decode(const store::TinRecord& record, std::string_view by
     return error(Code::kStorage, "The checkpoint's digest is not that of its vertices.");
   }
   terrain->set_source_grid(checkpoint->grid);
-  return TinState{record, std::move(*terrain), checkpoint->duplicates, checkpoint->open_resolution, checkpoint->revision};
+  return TinState{record, std::move(*terrain), checkpoint->duplicates, checkpoint->open_resolution,
+                  checkpoint->revision};
 }
 
 }  // namespace server::app

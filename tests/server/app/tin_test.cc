@@ -34,16 +34,23 @@ class FailingStore : public server::store::Store {
   bool fail = false;
   std::size_t appended = 0;
 
-  Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view) override { return status(); }
+  Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view) override {
+    return status();
+  }
   Result<void> update_title(std::string_view, std::string_view) override { return status(); }
   Result<void> remove_tin(std::string_view) override { return status(); }
-  Result<void> append(std::string_view, std::uint64_t, std::string_view, const server::store::RevisionInfo&) override {
+  Result<void> append(std::string_view, std::uint64_t, std::string_view,
+                      const server::store::RevisionInfo&) override {
     if (!fail) ++appended;
     return status();
   }
   Result<void> put_checkpoint(std::string_view, std::uint64_t, std::string_view) override { return status(); }
-  Result<std::vector<server::store::TinRecord>> list() override { return std::vector<server::store::TinRecord>{}; }
-  Result<server::store::Loaded> load(std::string_view) override { return tin::base::error(Code::kNotFound, ""); }
+  Result<std::vector<server::store::TinRecord>> list() override {
+    return std::vector<server::store::TinRecord>{};
+  }
+  Result<server::store::Loaded> load(std::string_view) override {
+    return tin::base::error(Code::kNotFound, "");
+  }
 
  private:
   Result<void> status() const {
@@ -70,7 +77,8 @@ class TinTest : public testing::Test {
     return tin_.read([](const Terrain& t, std::uint64_t) { return t.digest(); });
   }
   std::string broken() const {
-    return tin_.read([](const Terrain& t, std::uint64_t) { return tin::mesh::validate(t.mesh()).value_or(""); });
+    return tin_.read(
+        [](const Terrain& t, std::uint64_t) { return tin::mesh::validate(t.mesh()).value_or(""); });
   }
 };
 
@@ -87,7 +95,8 @@ TEST_F(TinTest, EditsAdvanceTheRevisionAndAreJournaled) {
 TEST_F(TinTest, AnEditThatCannotBeStoredIsNeverSeen) {
   const std::string before = digest();
   store_.fail = true;
-  const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, Remove{VertexId(7)}, MoveTo{VertexId(9), 3.3, 3.3}};
+  const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, Remove{VertexId(7)},
+                                     MoveTo{VertexId(9), 3.3, 3.3}};
   const auto edited = tin_.edit(edits, std::nullopt, info_);
   ASSERT_FALSE(edited.ok());
   EXPECT_EQ(edited.error().code, Code::kStorage);
@@ -144,7 +153,9 @@ TEST_F(TinTest, PagesGoOnFromAKeptRevisionOnly) {
 
 TEST_F(TinTest, RemovalsOfAJobLeaveWhatWasEditedMeanwhile) {
   const Version seen = tin_.version();
-  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, std::nullopt, info_).ok());
+  ASSERT_TRUE(
+      tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, std::nullopt, info_)
+          .ok());
   std::vector<VertexId> ids;
   for (std::uint64_t id = 22; id < 340; ++id) ids.emplace_back(id);
   const auto landed = tin_.remove_vertices(seen, ids, info_);
@@ -172,8 +183,10 @@ TEST_F(TinTest, RemovalsBuiltAsideEqualRemovalsInPlace) {
 
 TEST(OpenFrameTest, IsFittedToTheFirstVerticesAndFixedThen) {
   FailingStore store;
-  Tin tin({{"t", "T", 5}, Terrain{tin::frame::Frame{}}, Duplicates::kReject, std::array<double, 2>{0, 0}, 1}, store, 500);
-  const std::vector<WorldEdit> far{InsertAt{5e6, 7e6, 1}, InsertAt{5e6 + 10, 7e6, 2}, InsertAt{5e6, 7e6 + 10, 3}};
+  Tin tin({{"t", "T", 5}, Terrain{tin::frame::Frame{}}, Duplicates::kReject, std::array<double, 2>{0, 0}, 1},
+          store, 500);
+  const std::vector<WorldEdit> far{InsertAt{5e6, 7e6, 1}, InsertAt{5e6 + 10, 7e6, 2},
+                                   InsertAt{5e6, 7e6 + 10, 3}};
   ASSERT_TRUE(tin.edit(far, std::nullopt, {}).ok());
   EXPECT_EQ(tin.summary().triangle_count, 1U);
   const auto near = tin.edit(std::vector<WorldEdit>{InsertAt{0, 0, 1}}, std::nullopt, {});
@@ -212,7 +225,9 @@ TEST(ConcurrencyTest, ReadersAnEditorAndALongReaderTogether) {
   });
   for (int i = 0; i < 300; ++i) {
     const double x = 0.001 * (i % 97) + 0.3;
-    ASSERT_TRUE(tin.edit(std::vector<WorldEdit>{InsertAt{x, 0.77, double(i)}, SetZ{VertexId(3), double(i)}}, std::nullopt, {}).ok());
+    ASSERT_TRUE(tin.edit(std::vector<WorldEdit>{InsertAt{x, 0.77, double(i)}, SetZ{VertexId(3), double(i)}},
+                         std::nullopt, {})
+                    .ok());
   }
   stop = true;
   for (auto& thread : threads) thread.join();

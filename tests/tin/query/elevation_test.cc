@@ -71,7 +71,8 @@ TEST(ElevationTest, OfAPlaneIsThePlaneEverywhere) {
   support::Random random(support::seed());
   SCOPED_TRACE("TINSMITH_SEED=" + std::to_string(support::seed()));
   std::vector<Placement> placements;
-  for (const Point p : support::random_points(random, 400, 1000)) placements.push_back({p, 3 + 0.25 * p.x - 0.5 * p.y});
+  for (const Point p : support::random_points(random, 400, 1000))
+    placements.push_back({p, 3 + 0.25 * p.x - 0.5 * p.y});
   const Terrain t = *Terrain::build({}, placements, Duplicates::kReject);
   ElevationQuery query(t, Voids::kKeep);
   int inside = 0;
@@ -96,7 +97,8 @@ TEST(ElevationTest, DoesNotDependOnTheHistoryNorOnTheWalk) {
   support::Random random(support::seed());
   SCOPED_TRACE("TINSMITH_SEED=" + std::to_string(support::seed()));
   std::vector<Placement> placements;
-  for (const Point p : support::grid_points(12, 12, 3)) placements.push_back({p, std::sin(p.x) + std::cos(p.y)});
+  for (const Point p : support::grid_points(12, 12, 3))
+    placements.push_back({p, std::sin(p.x) + std::cos(p.y)});
   const Terrain bulk = *Terrain::build({}, placements, Duplicates::kReject);
   Terrain edited{tin::frame::Frame{}};
   std::shuffle(placements.begin(), placements.end(), random);
