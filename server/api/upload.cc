@@ -31,6 +31,7 @@ Result<std::array<double, 2>> parse_resolution(const std::string& text) {
 Result<app::ImportRequest> read_request(const Context& context, const Request& request) {
   app::ImportRequest import;
   import.title = request.query_value("title").value_or("");
+  if (auto fine = proto::check_title(import.title, "query:title"); !fine) return fine.error();
   if (const auto id = request.query_value("id")) {
     if (!proto::is_tin_id(*id)) {
       return error(Code::kInvalidValue,
@@ -126,6 +127,10 @@ std::string disposition_file_name(std::string_view field) {
 }
 
 Result<Response> create_from_upload(Context& context, Request& request) {
+  if (media_type(request).starts_with("multipart/")) {
+    return error(Code::kUnsupported, "The body must be the file itself, not a form that holds it.",
+                 "header:Content-Type");
+  }
   auto import = read_request(context, request);
   if (!import) return import.error();
   if (auto room = context.catalogue.check_room(import->id); !room) return room.error();
