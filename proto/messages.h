@@ -56,6 +56,7 @@ struct CreateTin {
   std::optional<std::string> crs;                   // as parse_crs() gives it: "EPSG:32617"
   std::optional<std::array<double, 2>> resolution;  // lattice steps in x and y, > 0
   std::optional<Position2> origin;
+  std::optional<std::string> vertical_unit;
   tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
   std::vector<Position> vertices;
 };
@@ -129,7 +130,7 @@ struct TinDocument {
   std::optional<std::array<double, 4>> bbox;  // min x, min y, max x, max y in the TIN's CRS; null when empty
   std::optional<std::array<double, 2>> z_range;  // null when empty
   std::string digest;
-  std::string vertical_unit;
+  std::string vertical_unit;  // null when empty: not known
   std::optional<SourceInfo> source;
   std::vector<Link> links;
 };
@@ -203,6 +204,7 @@ struct SimplifyResults {
   double max_error = 0;                   // in the TIN's vertical unit, over every source sample
   std::optional<Position2> max_error_at;  // null when every sample lies on the result
   bool tolerance_met = true;              // false only when max_vertices got in its way
+  bool edited_meanwhile = false;          // edits landed while it worked; the report is about what it saw
   double rmse = 0;
   double seconds = 0;
   std::string tin;

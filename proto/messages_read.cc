@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxTinId = 64;
 constexpr std::size_t kMaxTitle = 512;
+constexpr std::size_t kMaxUnit = 64;
 constexpr std::size_t kMaxCrsName = 256;
 constexpr std::size_t kMaxWord = 256;
 constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // ids are exact in every JSON reader up to here
@@ -150,6 +151,11 @@ Result<void> read_create_placing(const Object& object, CreateTin& create) {
     if (!origin) return std::move(origin).error();
     create.origin = Position2{(*origin)[0], (*origin)[1]};
   }
+  if (const auto member = object.find("verticalUnit")) {
+    const auto text = member->string(kMaxUnit);
+    if (!text) return text.error();
+    create.vertical_unit = std::string(*text);
+  }
   if (const auto member = object.find("duplicates")) {
     auto text = member->string(kMaxWord);
     if (!text) return std::move(text).error();
@@ -265,8 +271,8 @@ Result<Voids> parse_voids(std::string_view text, std::string where) {
 Result<CreateTin> read_create_tin(std::string_view body, std::size_t max_vertices) {
   auto document = Document::parse(body);
   if (!document) return std::move(document).error();
-  auto object =
-      document->root().object({"id", "title", "crs", "resolution", "origin", "duplicates", "vertices"});
+  auto object = document->root().object(
+      {"id", "title", "crs", "resolution", "origin", "verticalUnit", "duplicates", "vertices"});
   if (!object) return std::move(object).error();
   CreateTin create;
   auto id = read_tin_id(*object, "id");

@@ -58,7 +58,8 @@ void write_tin(JsonWriter& json, const TinDocument& tin) {
   json.key("zRange");
   tin.z_range ? write_pair(json, (*tin.z_range)[0], (*tin.z_range)[1]) : void(json.null());
   json.key("digest").string(tin.digest);
-  json.key("verticalUnit").string(tin.vertical_unit);
+  json.key("verticalUnit");
+  tin.vertical_unit.empty() ? json.null() : json.string(tin.vertical_unit);
   if (tin.source) {
     json.key("source");
     write_source(json, *tin.source);
@@ -258,6 +259,7 @@ std::string simplify_results_json(const SimplifyResults& results) {
   results.max_error_at ? write_pair(json, results.max_error_at->x, results.max_error_at->y)
                        : void(json.null());
   json.key("toleranceMet").boolean(results.tolerance_met);
+  json.key("editedMeanwhile").boolean(results.edited_meanwhile);
   json.key("rmse").number(results.rmse);
   json.key("seconds").number(results.seconds);
   json.key("tin").string(results.tin);

@@ -24,6 +24,7 @@ constexpr std::string_view kSimplifyOutputs = R"({
 "maxError":{"title":"Largest vertical distance to a source sample, in the TIN's vertical unit","schema":{"type":"number"}},
 "maxErrorAt":{"title":"Where it is, in the TIN's CRS","schema":{"type":"array","items":{"type":"number"},"minItems":2,"maxItems":2,"nullable":true}},
 "toleranceMet":{"title":"Whether the tolerance holds; false only when maxVertices got in its way","schema":{"type":"boolean"}},
+"editedMeanwhile":{"title":"Whether others edited the TIN while the job worked; their edits stand","schema":{"type":"boolean"}},
 "rmse":{"title":"Root mean square of the vertical distances","schema":{"type":"number"}},
 "seconds":{"title":"Time the work took","schema":{"type":"number"}},
 "tin":{"title":"Id of the simplified TIN","schema":{"type":"string"}},

@@ -40,6 +40,9 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/tins", {&limits.tins, 1, kMillion}},
           {"/limits/edits_per_request", {&limits.edits_per_request, 1, 10 * kMillion}},
           {"/limits/positions_per_request", {&limits.positions_per_request, 1, 100 * kMillion}},
+          {"/limits/uploads_at_once", {&limits.uploads_at_once, 1, 1000}},
+          {"/limits/exports_at_once", {&limits.exports_at_once, 1, 1000}},
+          {"/limits/export_seconds", {&limits.export_seconds, 1, kMillion}},
           {"/limits/page_size", {&limits.page_size, 1, kMillion}},
           {"/limits/page_size_max", {&limits.page_size_max, 1, kMillion}}};
 }
@@ -48,7 +51,8 @@ Numbers numbers_of(JobConfig& jobs) {
   return {{"/jobs/workers", {&jobs.workers, 1, 256}},
           {"/jobs/queued", {&jobs.queued, 1, 100'000}},
           {"/jobs/kept", {&jobs.kept, 1, 100'000}},
-          {"/jobs/sync_seconds", {&jobs.sync_seconds, 0, 3600}}};
+          {"/jobs/sync_seconds", {&jobs.sync_seconds, 0, 3600}},
+          {"/jobs/sync_waiting", {&jobs.sync_waiting, 1, 1000}}};
 }
 
 Numbers numbers_of(HttpConfig& http) {

@@ -30,6 +30,9 @@ struct LimitConfig {
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;
   std::int64_t positions_per_request = 1'000'000;
+  std::int64_t uploads_at_once = 2;     // files being read beside the jobs
+  std::int64_t exports_at_once = 2;     // rasters being made
+  std::int64_t export_seconds = 120;    // for making one
   std::int64_t page_size = 1000;        // when a request does not say
   std::int64_t page_size_max = 10'000;  // the most that it may say; not less than page_size
   friend bool operator==(const LimitConfig&, const LimitConfig&) = default;
@@ -40,13 +43,15 @@ struct JobConfig {
   std::int64_t queued = 16;
   std::int64_t kept = 200;
   std::int64_t sync_seconds =
-      60;  // how long a request waits for its job before it is told where to ask later
+      60;                         // how long a request waits for its job before it is told where to ask later
+  std::int64_t sync_waiting = 4;  // requests that may wait so; others are told at once
   friend bool operator==(const JobConfig&, const JobConfig&) = default;
 };
 
 struct HttpConfig {
   std::int64_t io_threads = 2;
-  std::int64_t worker_threads = 0;  // 0: one per core
+  std::int64_t worker_threads =
+      0;  // for short requests, beside those that may wait; 0: two per core, at least 8
   std::int64_t header_bytes = 16 * 1024;
   std::int64_t header_fields = 100;
   std::int64_t target_bytes = 8 * 1024;

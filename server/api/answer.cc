@@ -64,23 +64,28 @@ std::string entity_tag(const app::Tin& tin, std::uint64_t revision, const Reques
   return "\"" + tag_prefix(tin) + std::to_string(revision) + "-" + std::string(digits, end) + "\"";
 }
 
-Result<std::optional<std::uint64_t>> expected_revision(const app::Tin& tin, std::string_view if_match) {
-  if (if_match.empty() || if_match == "*") return std::optional<std::uint64_t>();
+Result<std::vector<std::uint64_t>> expected_revisions(const app::Tin& tin, std::string_view if_match) {
+  std::vector<std::uint64_t> revisions;
+  if (if_match.empty() || if_match == "*") return revisions;
   const std::string prefix = "\"" + tag_prefix(tin);
-  std::optional<std::uint64_t> newest;
-  for (std::size_t at = if_match.find(prefix); at != std::string_view::npos;
-       at = if_match.find(prefix, at + 1)) {
-    if (at >= 2 && if_match.substr(at - 2, 2) == "W/")
-      continue;  // a weak tag never matches here (RFC 9110, 13.1.1)
+  while (!if_match.empty()) {
+    const auto comma = std::min(if_match.find(','), if_match.size());
+    std::string_view tag = if_match.substr(0, comma);
+    if_match.remove_prefix(std::min(comma + 1, if_match.size()));
+    while (tag.starts_with(' ') || tag.starts_with('\t')) tag.remove_prefix(1);
+    // Weak tags ("W/...") never match here (RFC 9110, 13.1.1), and neither does another TIN's.
+    if (!tag.starts_with(prefix)) continue;
     std::uint64_t revision = 0;
-    const char* digits = if_match.data() + at + prefix.size();
-    const auto parsed = std::from_chars(digits, if_match.data() + if_match.size(), revision);
-    if (parsed.ec == std::errc{}) newest = std::max(newest.value_or(0), revision);
+    const char* digits = tag.data() + prefix.size();
+    const auto parsed = std::from_chars(digits, tag.data() + tag.size(), revision);
+    if (parsed.ec == std::errc{} && parsed.ptr != tag.data() + tag.size() && *parsed.ptr == '-') {
+      revisions.push_back(revision);
+    }
   }
-  if (!newest) {
+  if (revisions.empty()) {
     return error(Code::kPrecondition, "If-Match names no revision of this TIN.", "header:If-Match");
   }
-  return newest;
+  return revisions;
 }
 
 bool prefers_async(const Request& request) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/app/tin.h"
 #include "server/http/message.h"
@@ -32,9 +33,9 @@ http::Handler guarded(std::function<Result<Response>(Request&)> handler);
 /// The strong entity tag of a representation of a TIN: the TIN's creation, its revision, and what was asked
 /// for.
 std::string entity_tag(const app::Tin& tin, std::uint64_t revision, const Request& request);
-/// The revision that an If-Match field asks for; nothing when it asks for none ("" or "*").
-/// Errors: kPrecondition when no tag of this TIN is in it, kMalformed.
-Result<std::optional<std::uint64_t>> expected_revision(const app::Tin& tin, std::string_view if_match);
+/// The revisions that an If-Match field allows; none when it allows all ("" or "*").
+/// Errors: kPrecondition when it holds no tag of this TIN.
+Result<std::vector<std::uint64_t>> expected_revisions(const app::Tin& tin, std::string_view if_match);
 
 /// Whether the client prefers to be answered at once and to ask for the result later (RFC 7240).
 bool prefers_async(const Request& request);

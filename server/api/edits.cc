@@ -37,7 +37,7 @@ Result<Response> edit(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
   if (auto json = require_json(request); !json) return json.error();
-  const auto expected = expected_revision(**tin, request.header("if-match"));
+  const auto expected = expected_revisions(**tin, request.header("if-match"));
   if (!expected) return expected.error();
   const auto message = proto::read_edit_request(
       request.body, static_cast<std::size_t>(context.config.limits.edits_per_request));

@@ -1,5 +1,6 @@
 // GET /tins/{tin}/export: the whole TIN, or a part, as a file.
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 
 #include "proto/crs_uri.h"
@@ -91,17 +92,40 @@ struct Unfinished {
   }
 };
 
-Result<Response> geotiff(const Context& context, const app::Tin& tin, const app::Version& version,
-                         const ExportRequest& wanted) {
+/// Ends the making of a raster that takes too long, or that nobody will get.
+class Patience {
+ public:
+  Patience(const Request& request, std::int64_t seconds)
+      : request_(request),
+        seconds_(seconds),
+        end_(std::chrono::steady_clock::now() + std::chrono::seconds(seconds)) {}
+  Result<void> check() const {
+    if (request_.is_aborted()) return error(Code::kCancelled, "The server is stopping.");
+    if (std::chrono::steady_clock::now() < end_) return {};
+    return error(Code::kTooLarge, "Making the raster takes more than " + std::to_string(seconds_) +
+                                      " s, the limit here: ask for a smaller box or larger cells.");
+  }
+
+ private:
+  const Request& request_;
+  const std::int64_t seconds_;
+  const std::chrono::steady_clock::time_point end_;
+};
+
+Result<Response> geotiff(Context& context, const Request& request, const app::Tin& tin,
+                         const app::Version& version, const ExportRequest& wanted) {
+  const Slot slot(context.exports);
+  if (!slot.taken()) return error(Code::kTooMany, "Too many rasters are being made; try again.");
   auto grid = ExportGrid::plan(*version.terrain, wanted);
   if (!grid) return grid.error();
   static std::atomic<std::uint64_t> exports{0};
   const auto folder = context.config.data_dir / "exports";
   std::filesystem::create_directories(folder);
   Unfinished file{folder / (std::to_string(exports++) + ".tif")};
-  const auto row_source = [&grid](std::int64_t row, std::span<double> values) -> Result<void> {
+  const Patience patience(request, context.config.limits.export_seconds);
+  const auto row_source = [&](std::int64_t row, std::span<double> values) -> Result<void> {
     grid->sample_row(row, values);
-    return {};
+    return patience.check();
   };
   if (auto written = gdal::write_geotiff(file.path, grid->spec(), row_source, nullptr); !written)
     return written.error();
@@ -110,6 +134,19 @@ Result<Response> geotiff(const Context& context, const app::Tin& tin, const app:
                       {"Content-Disposition", attachment(tin, ".tif")}};
   response.body = http::FileBody{std::exchange(file.path, {}), true};
   return response;
+}
+
+/// Parameters of the other format would have no effect: saying so beats ignoring them.
+Result<void> check_format_parameters(const Request& request, std::string_view format) {
+  const auto misplaced = [&](std::string_view name) -> Result<void> {
+    if (!request.query_value(name)) return {};
+    return error(Code::kInvalidValue,
+                 "The parameter " + std::string(name) + " does not go with f=" + std::string(format) + ".",
+                 "query:" + std::string(name));
+  };
+  if (format == "geotiff") return misplaced("collection");
+  if (auto fine = misplaced("cell-size"); !fine) return fine;
+  return misplaced("voids");
 }
 
 Result<ExportRequest> read_export_request(const Context& context, const Request& request) {
@@ -151,9 +188,10 @@ Result<Response> export_tin(Context& context, const Request& request) {
   if (format != "geotiff" && format != "geojson") {
     return error(Code::kInvalidValue, "The formats are geotiff and geojson.", "query:f");
   }
+  if (auto fine = check_format_parameters(request, format); !fine) return fine.error();
   app::Version version = (*tin)->version();
   const std::string tag = entity_tag(**tin, version.revision, request);
-  auto response = format == "geotiff" ? geotiff(context, **tin, version, *wanted)
+  auto response = format == "geotiff" ? geotiff(context, request, **tin, version, *wanted)
                                       : geojson(**tin, std::move(version), *wanted, *kind);
   if (response) response->headers.emplace_back("ETag", tag);
   return response;

@@ -140,6 +140,13 @@ Result<void> ExportGrid::lay_new_grid(const ExportRequest& request, const std::s
   const auto whole = extent_in(*terrain_, *from_own);
   if (!whole) return whole.error();
   Extent extent = *whole;
+  if (const auto* source = terrain_->source_grid(); source != nullptr && from_own->identity()) {
+    // The source's whole area, so that its own cell size gives its own grid.
+    const auto& gt = source->geotransform;
+    const double x1 = gt[0] + source->width * gt[1], y1 = gt[3] + source->height * gt[5];
+    extent = {std::min({gt[0], x1, whole->min_x}), std::min({gt[3], y1, whole->min_y}),
+              std::max({gt[0], x1, whole->max_x}), std::max({gt[3], y1, whole->max_y})};
+  }
   if (request.box) extent = {request.box->min_x, request.box->min_y, request.box->max_x, request.box->max_y};
   const double cell = request.cell_size.value_or(default_cell_size(*terrain_, *whole));
   const auto count = [cell](double length) { return std::max(1.0, std::ceil(length / cell - 1e-9)); };

@@ -15,8 +15,6 @@ using tin::terrain::Terrain;
 
 namespace {
 
-constexpr std::size_t kScanUnderLock = 50'000;  // vertices that a box may be searched in while editors wait
-
 /// What a `next` token says: a revision, and where to go on in it.
 struct PageToken {
   std::uint64_t revision = 0;
@@ -121,34 +119,16 @@ Result<Page> build_page(const PageRequest& request, const Terrain& terrain, std:
   return page;
 }
 
-/// The page from the present revision under the lock if that is quick, else from a version.
-Result<Page> make_page(const app::Tin& tin, const PageRequest& request) {
-  const auto quick =
-      tin.read([&](const Terrain& terrain, std::uint64_t revision) -> std::optional<Result<Page>> {
-        const bool present = !request.token || request.token->revision == revision;
-        if (!present || (request.box && terrain.vertex_count() > kScanUnderLock)) return std::nullopt;
-        return build_page(request, terrain, revision);
-      });
-  if (quick) return *quick;
-  if (!request.token) {
-    const app::Version version = tin.version();
-    return build_page(request, *version.terrain, version.revision);
-  }
-  const auto version = tin.page_version(request.token->revision);
-  if (!version) return version.error();
-  return build_page(request, *version->terrain, version->revision);
-}
-
 Result<Response> items(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
   const auto asked = read_page_request(context, request);
   if (!asked) return asked.error();
-  auto page = make_page(**tin, *asked);
+  const auto version = asked->token ? (*tin)->page_version(asked->token->revision) : (*tin)->version();
+  if (!version) return version.error();
+  auto page = build_page(*asked, *version->terrain, version->revision);
   if (!page) return page.error();
-  if (page->has_next) {
-    if (auto version = (*tin)->page_version(page->revision)) (*tin)->keep_for_pages(*version);
-  }
+  if (page->has_next) (*tin)->keep_for_pages(*version);
   Response response{
       200, {{"Content-Type", std::string(proto::formats::kGeoJsonMediaType)}}, std::move(page->body)};
   response.headers.emplace_back("ETag", entity_tag(**tin, page->revision, request));
@@ -156,9 +136,9 @@ Result<Response> items(Context& context, const Request& request) {
 }
 
 /// The extent in CRS84, from the corners and edges of the extent in the TIN's CRS.
-std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin, const app::Summary& summary) {
+std::optional<std::array<double, 4>> geojson_bbox(const app::Summary& summary) {
   if (!summary.bounds) return std::nullopt;
-  const auto frame = tin.read([](const Terrain& terrain, std::uint64_t) { return terrain.frame(); });
+  const tin::frame::Frame& frame = summary.frame;
   auto positions = Positions::to_geojson(frame);
   if (!positions) return std::nullopt;
   constexpr int kParts = 16;
@@ -186,8 +166,8 @@ proto::CollectionDocument collection_document(const app::Tin& tin, const app::Su
   document.title = vertices ? "Vertices" : "Triangles";
   document.description = vertices ? "The vertices of the TIN: 3D points whose ids edits use"
                                   : "The triangles of the TIN: 3D polygons with their three vertex ids";
-  document.bbox = geojson_bbox(tin, summary);
-  const std::string crs = tin.read([](const Terrain& terrain, std::uint64_t) { return terrain.frame().crs; });
+  document.bbox = geojson_bbox(summary);
+  const std::string& crs = summary.frame.crs;
   if (!crs.empty()) document.crs = {std::string(proto::kCrs84Uri)};
   document.storage_crs = proto::crs_uri(crs).value_or("");
   const std::string self = "/tins/" + tin.id() + "/collections/" + document.id;

@@ -78,6 +78,7 @@ proto::JobStatus job_document(const jobs::JobStatus& job) {
   if (job.started_ms) document.started = rfc3339(*job.started_ms);
   if (job.finished_ms) document.finished = rfc3339(*job.finished_ms);
   if (job.error) document.message = job.error->message;
+  document.message = job.description + ": " + document.message;
   document.links.push_back({"/jobs/" + job.id, "self", std::string(kJson), ""});
   if (job.state == jobs::JobState::kSuccessful) {
     document.links.push_back({"/jobs/" + job.id + "/results",

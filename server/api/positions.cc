@@ -31,10 +31,6 @@ Result<Positions> Positions::to_geojson(const tin::frame::Frame& frame) {
   return frame.crs.empty() ? Positions() : between(frame.crs, kLonLat, "");
 }
 
-Result<Positions> Positions::from_geojson(const tin::frame::Frame& frame) {
-  return frame.crs.empty() ? Positions() : between(kLonLat, frame.crs, "");
-}
-
 bool Positions::convert(std::span<double> x, std::span<double> y, std::vector<std::uint8_t>& ok) {
   ok.assign(x.size(), 1);
   return !transform_ || transform_->transform(x, y, ok);

@@ -24,7 +24,6 @@ class Positions {
   static tin::base::Result<Positions> between(std::string_view from, std::string_view to, std::string where);
   /// From the TIN to GeoJSON's CRS84; a local CRS stays as it is.
   static tin::base::Result<Positions> to_geojson(const tin::frame::Frame& frame);
-  static tin::base::Result<Positions> from_geojson(const tin::frame::Frame& frame);
 
   bool identity() const { return !transform_; }
   /// In place; ok[i] is 0 where a position has no counterpart. Returns whether all have.

@@ -22,6 +22,7 @@ std::string results_json(const app::Simplified& done) {
   results.vertices_after = report.vertices_after;
   results.max_error = report.max_error;
   results.tolerance_met = report.tolerance_met;
+  results.edited_meanwhile = done.edited_meanwhile;
   if (report.worst) {
     results.max_error_at = done.tin->read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
       return proto::Position2{terrain.frame().x.world(report.worst->at.x),
@@ -66,7 +67,8 @@ Result<Response> execute(Context& context, const Request& request) {
         return results_json(*done);
       });
   if (!job) return job.error();
-  if (!prefers_async(request)) {
+  const Slot slot(context.waiting);
+  if (!prefers_async(request) && slot.taken()) {
     const auto finished = context.jobs.wait(*job, std::chrono::seconds(context.config.jobs.sync_seconds));
     if (finished && finished->finished_ms) return job_result_answer(*finished);
   }

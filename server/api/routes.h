@@ -1,8 +1,7 @@
 // All resources of the server in one table.
 #pragma once
 
-#include <semaphore>
-
+#include "server/api/slots.h"
 #include "server/app/catalogue.h"
 #include "server/config.h"
 #include "server/http/router.h"
@@ -12,10 +11,20 @@ namespace server::api {
 
 /// What resources work with. Outlives the router.
 struct Context {
+  Context(app::Catalogue& c, jobs::JobQueue& j, const Config& with)
+      : catalogue(c),
+        jobs(j),
+        config(with),
+        uploads(with.limits.uploads_at_once),
+        exports(with.limits.exports_at_once),
+        waiting(with.jobs.sync_waiting) {}
+
   app::Catalogue& catalogue;
   jobs::JobQueue& jobs;
   const Config& config;
-  std::counting_semaphore<> uploads{4};  // files being read at once, beside the jobs
+  Slots uploads;  // files being read beside the jobs
+  Slots exports;  // rasters being made
+  Slots waiting;  // requests that wait for their job
 };
 
 http::Router make_router(Context& context);

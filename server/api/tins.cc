@@ -24,20 +24,19 @@ proto::TinDocument tin_document(const app::Tin& tin) {
   document.vertex_count = summary.vertex_count;
   document.triangle_count = summary.triangle_count;
   document.digest = summary.digest;
-  tin.read([&](const Terrain& terrain, std::uint64_t) {
-    const Frame& frame = terrain.frame();
-    document.crs = frame.crs;
-    document.resolution = {frame.x.step(), frame.y.step()};
-    document.origin = {frame.x.origin, frame.y.origin};
-    document.vertical_unit = frame.vertical_unit;
-    if (summary.bounds) {
-      document.bbox = {frame.x.world(summary.bounds->min.x), frame.y.world(summary.bounds->min.y),
-                       frame.x.world(summary.bounds->max.x), frame.y.world(summary.bounds->max.y)};
-    }
-    if (const auto* grid = terrain.source_grid()) {
-      document.source = proto::SourceInfo{grid->width, grid->height, grid->data_type, grid->nodata};
-    }
-  });
+  const Frame& frame = summary.frame;
+  document.crs = frame.crs;
+  document.resolution = {frame.x.step(), frame.y.step()};
+  document.origin = {frame.x.origin, frame.y.origin};
+  document.vertical_unit = frame.vertical_unit;
+  if (summary.bounds) {
+    document.bbox = {frame.x.world(summary.bounds->min.x), frame.y.world(summary.bounds->min.y),
+                     frame.x.world(summary.bounds->max.x), frame.y.world(summary.bounds->max.y)};
+  }
+  if (summary.source) {
+    document.source = proto::SourceInfo{summary.source->width, summary.source->height,
+                                        summary.source->data_type, summary.source->nodata};
+  }
   if (summary.z_range) document.z_range = {summary.z_range->min, summary.z_range->max};
   const std::string self = "/tins/" + tin.id();
   document.links = {{self, "self", std::string(kJson), ""},
@@ -105,6 +104,12 @@ Result<Frame> frame_of(const proto::CreateTin& message, app::OpenResolution& ope
       frame.vertical_unit = crs->vertical->name;
       frame.vertical_unit_m = crs->vertical->metres;
     }
+  }
+  if (message.vertical_unit) {
+    const auto unit = gdal::vertical_unit(*message.vertical_unit);
+    if (!unit) return unknown_unit("/verticalUnit");
+    frame.vertical_unit = unit->name;
+    frame.vertical_unit_m = unit->metres;
   }
   const auto resolution = message.resolution.value_or(std::array<double, 2>{0, 0});
   if (!message.origin && message.vertices.empty()) open = resolution;
@@ -174,7 +179,8 @@ void add_tins(http::Router& router, Context& context) {
   router.add({.method = Method::kGet, .pattern = "/tins", .query = {"limit"}, .handler = on(list)});
   router.add({.method = Method::kPost,
               .pattern = "/tins",
-              .query = {"id", "title", "crs", "resolution", "layer", "z-field", "duplicates", "format"},
+              .query = {"id", "title", "crs", "resolution", "layer", "z-field", "vertical-unit", "duplicates",
+                        "format"},
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});

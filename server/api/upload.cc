@@ -45,6 +45,10 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
     if (!policy) return policy.error();
     import.duplicates = *policy;
   }
+  if (const auto text = request.query_value("vertical-unit")) {
+    import.vertical_unit = gdal::vertical_unit(*text);
+    if (!import.vertical_unit) return unknown_unit("query:vertical-unit");
+  }
   gdal::ImportOptions& options = import.options;
   options.file_name = disposition_file_name(request.header("content-disposition"));
   options.content_type = media_type(request);
@@ -95,22 +99,12 @@ Result<Response> import_as_job(Context& context, Request& request, app::ImportRe
   return job_accepted_answer(context.jobs, *job);
 }
 
-class UploadSlot {
- public:
-  explicit UploadSlot(std::counting_semaphore<>& slots) : slots_(slots), taken_(slots.try_acquire()) {}
-  ~UploadSlot() {
-    if (taken_) slots_.release();
-  }
-  UploadSlot(const UploadSlot&) = delete;
-  UploadSlot& operator=(const UploadSlot&) = delete;
-  bool taken() const { return taken_; }
-
- private:
-  std::counting_semaphore<>& slots_;
-  bool taken_;
-};
-
 }  // namespace
+
+tin::base::Error unknown_unit(std::string where) {
+  return error(Code::kInvalidValue, "The units of elevations are metre, foot and US survey foot.",
+               std::move(where));
+}
 
 std::string disposition_file_name(std::string_view field) {
   const std::string lower = http::lower_case(field);
@@ -131,11 +125,18 @@ Result<Response> create_from_upload(Context& context, Request& request) {
     return error(Code::kUnsupported, "The body must be the file itself, not a form that holds it.",
                  "header:Content-Type");
   }
+  if (request.body_file.empty() || std::filesystem::file_size(request.body_file) == 0) {
+    return error(Code::kInvalidValue, "The body is empty: it must be a data file.");
+  }
+  if (!request.header("content-encoding").empty()) {
+    return error(Code::kUnsupported, "The body must be the plain file, without Content-Encoding.",
+                 "header:Content-Encoding");
+  }
   auto import = read_request(context, request);
   if (!import) return import.error();
   if (auto room = context.catalogue.check_room(import->id); !room) return room.error();
   if (prefers_async(request)) return import_as_job(context, request, std::move(*import));
-  const UploadSlot slot(context.uploads);
+  const Slot slot(context.uploads);
   if (!slot.taken())
     return error(Code::kTooMany,
                  "Too many files are being read; try again, or ask with Prefer: respond-async.");

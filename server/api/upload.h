@@ -10,6 +10,9 @@ namespace server::api {
 /// and for bad parameters; kTooMany when too many files are being read.
 Result<Response> create_from_upload(Context& context, Request& request);
 
+/// The error of a vertical unit that nobody knows.
+tin::base::Error unknown_unit(std::string where);
+
 /// The file name that a Content-Disposition field gives; "" if none. Never a path: what stands before a slash
 /// is dropped.
 std::string disposition_file_name(std::string_view field);

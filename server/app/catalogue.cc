@@ -20,6 +20,8 @@ std::int64_t now_ms() {
 
 namespace {
 
+constexpr std::chrono::seconds kSweepEvery{30};
+
 /// 60 random bits in letters and digits.
 std::string make_up_id() {
   std::random_device device;
@@ -42,7 +44,19 @@ Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store>
   for (const store::TinRecord& record : *records) {
     if (auto loaded = catalogue->load(record); !loaded) return broken(record, loaded.error());
   }
+  catalogue->sweeper_ =
+      std::jthread([self = catalogue.get()](const std::stop_token& stop) { self->sweep(stop); });
   return catalogue;
+}
+
+/// Now and then frees the versions that no page will ask for any more.
+void Catalogue::sweep(const std::stop_token& stop) {
+  std::mutex unused;
+  while (!stop.stop_requested()) {
+    for (const auto& tin : list()) tin->drop_expired();
+    std::unique_lock lock(unused);
+    stopping_.wait_for(lock, stop, kSweepEvery, [] { return false; });
+  }
 }
 
 Result<void> Catalogue::load(const store::TinRecord& record) {

@@ -1,6 +1,7 @@
 // The TINs that are served, by id, each with its place in the store.
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "server/app/tin.h"
@@ -50,6 +52,7 @@ class Catalogue {
   Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits)
       : store_(std::move(store)), limits_(limits) {}
   tin::base::Result<void> load(const store::TinRecord& record);
+  void sweep(const std::stop_token& stop);
   tin::base::Result<void> check_room_locked(const std::optional<std::string>& id) const;
 
   std::unique_ptr<store::Store> store_;
@@ -57,6 +60,8 @@ class Catalogue {
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Tin>, std::less<>> tins_;
   std::set<std::string, std::less<>> being_created_;
+  std::condition_variable_any stopping_;
+  std::jthread sweeper_;  // last, so that it ends first
 };
 
 /// Unix time in milliseconds.

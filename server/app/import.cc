@@ -10,6 +10,10 @@ Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesys
   progress.begin_phase(0, 0.3);
   auto import = gdal::import_file(file, request.options, &progress);
   if (!import) return import.error();
+  if (request.vertical_unit) {
+    import->frame.vertical_unit = request.vertical_unit->name;
+    import->frame.vertical_unit_m = request.vertical_unit->metres;
+  }
   progress.begin_phase(0.3, 0.9);
   auto terrain = tin::terrain::Terrain::build(std::move(import->frame), import->placements,
                                               request.duplicates, &progress);

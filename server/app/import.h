@@ -7,6 +7,7 @@
 #include <string>
 
 #include "server/app/catalogue.h"
+#include "server/gdal/crs.h"
 #include "server/gdal/import.h"
 
 namespace server::app {
@@ -15,6 +16,7 @@ struct ImportRequest {
   std::optional<std::string> id;
   std::string title;
   tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
+  std::optional<gdal::VerticalUnit> vertical_unit;  // in place of what the file says
   gdal::ImportOptions options;
 };
 

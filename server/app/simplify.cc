@@ -29,6 +29,8 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
     const auto landed = request.tin->remove_vertices(seen, outcome->removed, {now_ms(), "", "simplify"});
     if (!landed) return landed.error();
     result.revision = landed->revision;
+    result.edited_meanwhile = landed->edited_meanwhile;
+    result.report.vertices_after = landed->vertices_left;
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -21,6 +21,9 @@ struct Simplified {
   std::shared_ptr<Tin> tin;    // the one that holds the result
   std::uint64_t revision = 0;  // of it
   double seconds = 0;
+  /// Others edited the TIN meanwhile: their edits stand, the report speaks of the version that was
+  /// simplified.
+  bool edited_meanwhile = false;
 };
 
 /// Errors: as simplify::simplify, Catalogue::create and Tin::remove_vertices; a cancelled or failed job

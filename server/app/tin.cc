@@ -19,10 +19,8 @@ using tin::terrain::Terrain;
 
 namespace {
 
-constexpr std::size_t kKeptVersions = 2;
-constexpr std::chrono::minutes kKeptFor{5};
-constexpr std::size_t kRebuildShare =
-    4;  // removing more than 1/4 of the vertices: building what stays is faster
+constexpr std::size_t kSmallRemoval = 20'000;  // vertices that are removed one by one while readers wait
+constexpr int kAttempts = 3;                   // to land a large removal without making editors wait
 
 std::string place(std::size_t index) {
   return "/" + std::to_string(index);
@@ -57,6 +55,40 @@ Result<std::vector<Edit>> to_lattice(std::span<const WorldEdit> edits, const tin
   return out;
 }
 
+/// Takes an applied edit back unless it was kept, also when something throws.
+class UndoUnlessKept {
+ public:
+  UndoUnlessKept(Terrain& terrain, const Terrain::Applied& applied) : terrain_(terrain), applied_(applied) {}
+  ~UndoUnlessKept() {
+    if (!kept_) terrain_.undo(applied_);
+  }
+  UndoUnlessKept(const UndoUnlessKept&) = delete;
+  UndoUnlessKept& operator=(const UndoUnlessKept&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  Terrain& terrain_;
+  const Terrain::Applied& applied_;
+  bool kept_ = false;
+};
+
+struct Removal {
+  std::vector<VertexId> ids;
+  Change change;
+};
+
+/// Of `ids`, the vertices that are in `now` as they were in `seen`.
+Removal removal_of_unchanged(const Terrain& seen, const Terrain& now, std::span<const VertexId> ids) {
+  Removal removal;
+  for (const VertexId id : ids) {
+    const auto present = now.vertex(id), then = seen.vertex(id);
+    if (!present || !then || present->at != then->at || present->z != then->z) continue;
+    removal.ids.push_back(id);
+    removal.change.steps.push_back({id, tin::terrain::Placement{present->at, present->z}, std::nullopt});
+  }
+  return removal;
+}
+
 }  // namespace
 
 Tin::Tin(TinState state, store::Store& store, std::size_t max_vertices)
@@ -86,49 +118,35 @@ void Tin::own_terrain() {
   versions_out_ = std::make_shared<std::atomic<int>>(0);
 }
 
+void Tin::replace_terrain(std::shared_ptr<Terrain> terrain) {
+  terrain_ = std::move(terrain);
+  versions_out_ = std::make_shared<std::atomic<int>>(0);
+}
+
 Summary Tin::summary() const {
   const std::shared_lock lock(mutex_);
   const std::lock_guard cache(cache_mutex_);
   if (!summary_ || summary_->revision != revision_) {
-    summary_ = Summary{revision_,          terrain_->vertex_count(), terrain_->triangle_count(),
-                       terrain_->bounds(), terrain_->z_range(),      terrain_->digest()};
+    const Terrain& t = *terrain_;
+    summary_ = Summary{revision_,   t.vertex_count(), t.triangle_count(), t.bounds(),
+                       t.z_range(), t.digest(),       t.frame(),          t.shared_source_grid()};
   }
   return *summary_;
 }
 
-void Tin::keep_for_pages(const Version& version) {
-  const auto now = std::chrono::steady_clock::now();
-  std::vector<Kept> dropped;  // destroyed after the lock: a last reference frees a whole terrain
-  const std::lock_guard lock(cache_mutex_);
-  std::erase_if(kept_, [&](Kept& kept) {
-    const bool drop = kept.until < now || kept.version.revision == version.revision;
-    if (drop) dropped.push_back(std::move(kept));
-    return drop;
-  });
-  if (kept_.size() == kKeptVersions) {
-    dropped.push_back(std::move(kept_.front()));
-    kept_.erase(kept_.begin());
-  }
-  kept_.push_back({version, now + kKeptFor});
-}
-
 Result<Version> Tin::page_version(std::uint64_t revision) const {
   if (Version present = version(); present.revision == revision) return present;
-  const std::lock_guard lock(cache_mutex_);
-  for (const Kept& kept : kept_) {
-    if (kept.version.revision == revision) return kept.version;
-  }
+  if (auto kept = kept_.find(revision)) return *kept;
   return error(Code::kGone, "Revision " + std::to_string(revision) +
                                 " is no longer kept; start again from the first page.");
 }
 
-Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::optional<std::uint64_t> expected,
+Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::span<const std::uint64_t> expected,
                          const store::RevisionInfo& info) {
   const std::unique_lock lock(mutex_);
   if (retired_) return gone(id());
-  if (expected && *expected != revision_) {
-    return error(Code::kPrecondition, "The TIN is at revision " + std::to_string(revision_) + ", not " +
-                                          std::to_string(*expected) + ".");
+  if (!expected.empty() && std::find(expected.begin(), expected.end(), revision_) == expected.end()) {
+    return error(Code::kPrecondition, "The TIN is at revision " + std::to_string(revision_) + " by now.");
   }
   // The first vertices of an open frame go into an empty terrain beside the present one: a refused edit
   // leaves the frame open.
@@ -149,6 +167,7 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::optional<std::ui
   auto applied = terrain.apply(*lattice_edits, duplicates_);
   if (!applied) return applied.error();
   if (applied->change.steps.empty()) return Edited{revision_, std::move(applied->ids)};
+  UndoUnlessKept undo(terrain, *applied);
   Result<void> kept;
   if (terrain.vertex_count() > max_vertices_) {
     kept = error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices.");
@@ -156,13 +175,10 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::optional<std::ui
     kept = store_.put_checkpoint(id(), revision_, empty_checkpoint);
   }
   if (kept) kept = journal(applied->change, info);
-  if (!kept) {
-    TIN_CHECK(terrain.replay(applied->change.inverse()).ok());
-    return kept.error();
-  }
+  if (!kept) return kept.error();
+  undo.keep();
   if (fitted) {
-    terrain_ = std::move(fitted);
-    versions_out_ = std::make_shared<std::atomic<int>>(0);
+    replace_terrain(std::move(fitted));
     open_resolution_.reset();
   }
   return Edited{revision_, std::move(applied->ids)};
@@ -211,43 +227,50 @@ Result<std::shared_ptr<Terrain>> Tin::fit_open_frame(std::span<const WorldEdit> 
   return std::make_shared<Terrain>(frame);
 }
 
-Result<Edited> Tin::remove_vertices(const Version& seen, std::span<const VertexId> ids,
-                                    const store::RevisionInfo& info) {
-  // Most of a large removal is done beside the readers, on the version seen, and counts if that is still the
-  // present one.
-  std::shared_ptr<Terrain> rebuilt;
-  if (ids.size() > seen.terrain->vertex_count() / kRebuildShare) {
-    rebuilt = std::make_shared<Terrain>(seen.terrain->without(ids));
+Result<Removed> Tin::remove_vertices(const Version& seen, std::span<const VertexId> ids,
+                                     const store::RevisionInfo& info) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const Version base = attempt == 0 ? seen : version();
+    const Removal removal = removal_of_unchanged(*seen.terrain, *base.terrain, ids);
+    if (removal.ids.size() <= kSmallRemoval) break;
+    auto rest = std::make_shared<Terrain>(base.terrain->without(removal.ids));
+    std::unique_lock lock(mutex_);
+    if (retired_) return gone(id());
+    if (base.revision != revision_) continue;
+    if (auto durable = journal(removal.change, info); !durable) return durable.error();
+    replace_terrain(std::move(rest));
+    const Removed removed{revision_, terrain_->vertex_count(), base.revision != seen.revision};
+    lock.unlock();
+    write_checkpoint();
+    return removed;
   }
-  const std::unique_lock lock(mutex_);
+  return remove_in_place(seen, ids, info);
+}
+
+/// Few vertices, or editors who were quicker each time: now they wait.
+Result<Removed> Tin::remove_in_place(const Version& seen, std::span<const VertexId> ids,
+                                     const store::RevisionInfo& info) {
+  std::unique_lock lock(mutex_);
   if (retired_) return gone(id());
-  Edited edited;
-  Change change;
-  for (const VertexId id : ids) {
-    const auto now = terrain_->vertex(id), then = seen.terrain->vertex(id);
-    if (!now || !then || now->at != then->at || now->z != then->z) continue;
-    change.steps.push_back({id, tin::terrain::Placement{now->at, now->z}, std::nullopt});
-    edited.ids.push_back(id);
-  }
-  if (change.steps.empty()) {
-    edited.revision = revision_;
-    return edited;
-  }
-  const bool unchanged = seen.revision == revision_;
-  if (auto durable = journal(change, info); !durable) return durable.error();
-  if (rebuilt && unchanged) {
-    terrain_ = std::move(rebuilt);
-    versions_out_ = std::make_shared<std::atomic<int>>(0);
-    // Only a start made quicker: the revision is durable already.
-    const auto kept =
-        store_.put_checkpoint(id(), revision_, encode(*terrain_, duplicates_, std::nullopt, revision_));
-    if (!kept) obs::log_warning("checkpoint_failed", {{"tin", id()}, {"message", kept.error().message}});
-  } else {
+  const bool edited_meanwhile = seen.revision != revision_;
+  const Removal removal = removal_of_unchanged(*seen.terrain, *terrain_, ids);
+  if (!removal.ids.empty()) {
     own_terrain();
-    TIN_CHECK(terrain_->replay(change).ok());
+    if (auto durable = journal(removal.change, info); !durable) return durable.error();
+    TIN_CHECK(terrain_->replay(removal.change).ok());
   }
-  edited.revision = revision_;
-  return edited;
+  const Removed removed{revision_, terrain_->vertex_count(), edited_meanwhile};
+  lock.unlock();
+  if (removal.ids.size() > kSmallRemoval) write_checkpoint();
+  return removed;
+}
+
+/// Makes the next start quicker. The journal holds everything, so failing is no loss.
+void Tin::write_checkpoint() {
+  const Version present = version();
+  const auto kept = store_.put_checkpoint(
+      id(), present.revision, encode(*present.terrain, duplicates_, std::nullopt, present.revision));
+  if (!kept) obs::log_warning("checkpoint_failed", {{"tin", id()}, {"message", kept.error().message}});
 }
 
 std::string Tin::encode(const Terrain& terrain, tin::terrain::Duplicates duplicates,

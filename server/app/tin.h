@@ -8,7 +8,6 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -20,6 +19,7 @@
 #include <vector>
 
 #include "server/app/fair_mutex.h"
+#include "server/app/version.h"
 #include "server/store/store.h"
 #include "tin/base/result.h"
 #include "tin/terrain/terrain.h"
@@ -47,7 +47,14 @@ struct Edited {
   std::vector<VertexId> ids;  // one per edit
 };
 
-/// What the document of a TIN says of its content.
+/// What became of the vertices that a simplification would remove.
+struct Removed {
+  std::uint64_t revision = 0;
+  std::size_t vertices_left = 0;
+  bool edited_meanwhile = false;  // others edited the TIN since the version that was seen
+};
+
+/// What the document of a TIN says of its content, all at one revision.
 struct Summary {
   std::uint64_t revision = 0;
   std::size_t vertex_count = 0;
@@ -55,12 +62,8 @@ struct Summary {
   std::optional<tin::terrain::Box> bounds;
   std::optional<tin::terrain::ZRange> z_range;
   std::string digest;
-};
-
-/// An immutable terrain at one revision; keep it for as long as you read it, and no longer.
-struct Version {
-  std::shared_ptr<const tin::terrain::Terrain> terrain;
-  std::uint64_t revision = 0;
+  tin::frame::Frame frame;
+  std::shared_ptr<const tin::terrain::SourceGrid> source;  // null for points
 };
 
 /// All that a Tin begins with.
@@ -93,22 +96,24 @@ class Tin {
   Version version() const;
   Summary summary() const;
 
-  /// Remembers the present version for a while, so that pages can go on from it when edits arrive; see
-  /// page_version().
-  void keep_for_pages(const Version& version);
+  /// Remembers a version for a while, so that pages can go on from it when edits arrive; see page_version().
+  void keep_for_pages(const Version& version) { kept_.keep(version); }
+  /// Frees what was remembered too long ago. To be called now and then.
+  void drop_expired() { kept_.drop_expired(); }
   /// The version of that revision: the present one or one kept for pages. Errors: kGone.
   tin::base::Result<Version> page_version(std::uint64_t revision) const;
 
-  /// Applies all edits or none; durable when it returns. `expected` is the revision that the client saw, if
-  /// it said. Errors: kPrecondition; as frame::to_lattice and Terrain::apply, at "/i"; kTooLarge (vertices
-  /// per TIN); kStorage.
-  tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, std::optional<std::uint64_t> expected,
+  /// Applies all edits or none; durable when it returns. `expected`: the present revision must be one of
+  /// these, if any are given. Errors: kPrecondition; as frame::to_lattice and Terrain::apply, at "/i";
+  /// kTooLarge (vertices per TIN); kNotFound (retired); kStorage.
+  tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, std::span<const std::uint64_t> expected,
                                  const store::RevisionInfo& info);
 
-  /// Removes the vertices as one revision; those that are gone meanwhile, or changed since `seen`, stay out
-  /// of it. Errors: kStorage.
-  tin::base::Result<Edited> remove_vertices(const Version& seen, std::span<const VertexId> ids,
-                                            const store::RevisionInfo& info);
+  /// Removes the vertices (ascending) as one revision; those that are gone meanwhile, or changed since
+  /// `seen`, stay out of it. A large removal is prepared beside readers and editors. Errors: kNotFound
+  /// (retired), kStorage.
+  tin::base::Result<Removed> remove_vertices(const Version& seen, std::span<const VertexId> ids,
+                                             const store::RevisionInfo& info);
 
   /// Removes the TIN from the store. Those who hold it still may read it; edits get kNotFound, so that none
   /// of them, and no job that ends late, can reach a later TIN of the same id. Errors: kNotFound (it is gone
@@ -126,6 +131,10 @@ class Tin {
   void own_terrain();  // copies it if a version is out; with mutex_ held
   tin::base::Result<std::shared_ptr<Terrain>> fit_open_frame(std::span<const WorldEdit> edits) const;
   tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
+  void replace_terrain(std::shared_ptr<Terrain> terrain);
+  tin::base::Result<Removed> remove_in_place(const Version& seen, std::span<const VertexId> ids,
+                                             const store::RevisionInfo& info);
+  void write_checkpoint();
 
   const store::TinRecord record_;
   const tin::terrain::Duplicates duplicates_;
@@ -141,11 +150,7 @@ class Tin {
 
   mutable std::mutex cache_mutex_;
   mutable std::optional<Summary> summary_;
-  struct Kept {
-    Version version;
-    std::chrono::steady_clock::time_point until;
-  };
-  mutable std::vector<Kept> kept_;
+  KeptVersions kept_;
 };
 
 }  // namespace server::app

@@ -50,10 +50,12 @@ http::ServerOptions http_options(const Config& config) {
   options.address = config.listen.address;
   options.port = config.listen.port;
   options.io_threads = static_cast<int>(config.http.io_threads);
-  // Handlers may wait (for the disk, for a job), so there are more of them than cores.
+  // Those that may take long have threads of their own, so that they leave the short ones theirs.
   const auto by_cores = static_cast<std::int64_t>(std::max(8U, 2 * std::thread::hardware_concurrency()));
-  options.worker_threads =
-      static_cast<int>(config.http.worker_threads == 0 ? by_cores : config.http.worker_threads);
+  const std::int64_t for_short = config.http.worker_threads == 0 ? by_cores : config.http.worker_threads;
+  const std::int64_t for_long =
+      config.limits.uploads_at_once + config.limits.exports_at_once + config.jobs.sync_waiting;
+  options.worker_threads = static_cast<int>(for_short + for_long);
   options.header_bytes = static_cast<std::size_t>(config.http.header_bytes);
   options.header_fields = static_cast<std::size_t>(config.http.header_fields);
   options.target_bytes = static_cast<std::size_t>(config.http.target_bytes);
@@ -140,8 +142,10 @@ int serve(const ServeArguments& arguments) {
               url(config->listen, *port).c_str());
   std::fflush(stdout);
   obs::log_info("stopping", {{"signal", wait_for_stop(signals)}});
-  jobs.stop();
+  // Both drain at once: requests may wait for jobs, jobs for nobody.
+  std::jthread jobs_draining([&] { jobs.drain(std::chrono::seconds(config->http.drain_seconds)); });
   server.stop();
+  jobs_draining.join();
   obs::log_info("stopped");
   return 0;
 }

@@ -8,7 +8,7 @@ namespace server::http {
 namespace {
 
 constexpr std::string_view kRequestFields =
-    "Accept, Authorization, Content-Disposition, Content-Type, Idempotency-Key, If-Match, If-None-Match, "
+    "Accept, Authorization, Content-Disposition, Content-Type, If-Match, If-None-Match, "
     "Last-Event-ID, Prefer";
 
 Response describe_options(const std::vector<Method>& allowed) {

@@ -28,6 +28,7 @@ void Exchange::admit(Head& head) {
   context_.minor = head.minor;
   access_.method = method_name(head.method);
   admission_ = http::admit(head, context_.request_id, shared_.router, shared_.pages, shared_.options);
+  admission_.request.aborted = &shared_.aborted;
   access_.path = admission_.request.path;
   if (admission_.route != nullptr) access_.route = admission_.route->pattern;
   context_.if_none_match = admission_.request.header("if-none-match");

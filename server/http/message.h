@@ -2,6 +2,7 @@
 // a string, a file, or a source that is asked for piece after piece.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -37,6 +38,7 @@ struct Request {
   std::string body;                 // when the route takes it in memory
   std::filesystem::path body_file;  // when the route takes it as a file: gone after the handler returned
   std::string id;                   // also the answer's X-Request-Id
+  const std::atomic<bool>* aborted = nullptr;  // set when the server will not wait for the answer any more
 
   /// The value of a query parameter, if it was sent.
   std::optional<std::string> query_value(std::string_view name) const;
@@ -46,6 +48,9 @@ struct Request {
 
   /// The value that the path has for `name` in the route's pattern; "" if the pattern has no such name.
   std::string_view path_parameter(std::string_view name) const;
+
+  /// Whether the answer is not waited for any more: long handlers ask now and then, and give up.
+  bool is_aborted() const { return aborted != nullptr && aborted->load(std::memory_order_relaxed); }
 
   /// Hands the uploaded file to the caller, who removes it from now on.
   std::filesystem::path release_body_file();

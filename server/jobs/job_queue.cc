@@ -81,7 +81,7 @@ Result<JobId> JobQueue::submit(std::string kind, std::string description, Work w
   const JobId id = job->status.id;
   {
     const std::lock_guard guard(mutex_);
-    if (stopped_) return tin::base::error(Code::kTooMany, "the server is shutting down");
+    if (stopped_ || draining_) return tin::base::error(Code::kTooMany, "the server is shutting down");
     if (queued_.size() >= limits_.max_queued) {
       return tin::base::error(Code::kTooMany, std::to_string(queued_.size()) + " jobs are waiting already");
     }
@@ -136,6 +136,15 @@ Result<void> JobQueue::dismiss(std::string_view id) {
     job->status.error.reset();
   }
   return {};
+}
+
+void JobQueue::drain(std::chrono::milliseconds timeout) {
+  {
+    std::unique_lock lock(mutex_);
+    draining_ = true;
+    finished_changed_.wait_for(lock, timeout, [this] { return queued_.empty() && running_.empty(); });
+  }
+  stop();
 }
 
 void JobQueue::stop() {

@@ -79,6 +79,9 @@ class JobQueue {
   /// its result is dropped, and it is forgotten in its turn. Errors: kNotFound.
   tin::base::Result<void> dismiss(std::string_view id);
 
+  /// Takes no more jobs, lets those that wait or run finish until `timeout` is over, then stops.
+  void drain(std::chrono::milliseconds timeout);
+
   /// Dismisses all that wait or run, and returns when no work runs any more. Later submissions fail.
   void stop();
 
@@ -96,6 +99,7 @@ class JobQueue {
   mutable std::mutex mutex_;
   mutable std::condition_variable finished_changed_;
   std::condition_variable queue_changed_;
+  bool draining_ = false;
   bool stopped_ = false;
   std::deque<JobPtr> queued_;
   std::vector<JobPtr> running_;

@@ -131,11 +131,11 @@ TEST(AnswersTest, OfJobsKeepTheContract) {
 }
 
 TEST(AnswersTest, OfSimplifyKeepTheContract) {
-  proto::SimplifyResults results{1442401, 17250,  9.99, proto::Position2{-71.5, 44.25}, true, 3.5,
-                                 11.25,   "hill", 5};
+  proto::SimplifyResults results{1442401, 17250,  9.99, proto::Position2{-71.5, 44.25}, true, false,
+                                 3.5,     11.25, "hill", 5};
   EXPECT_EQ(proto::simplify_results_json(results),
             R"({"verticesBefore":1442401,"verticesAfter":17250,"maxError":9.99,"maxErrorAt":[-71.5,44.25],)"
-            R"("toleranceMet":true,"rmse":3.5,"seconds":11.25,"tin":"hill","revision":5})");
+            R"("toleranceMet":true,"editedMeanwhile":false,"rmse":3.5,"seconds":11.25,"tin":"hill","revision":5})");
   results.max_error_at.reset();
   const std::string json = proto::simplify_results_json(results);
   expect_clean(violations("GET", "/jobs/{job}/results", 200, json), json);

@@ -35,8 +35,8 @@ struct Frame {
   std::string crs;  // "EPSG:4326" where an authority code is known, else WKT2; empty: unknown (local)
   Axis x;
   Axis y;
-  std::string vertical_unit = "metre";  // name as users know it: metre, foot, US survey foot
-  double vertical_unit_m = 1;           // its length in metres
+  std::string vertical_unit;   // name as users know it: metre, foot, US survey foot; empty: unknown
+  double vertical_unit_m = 1;  // its length in metres
   friend bool operator==(const Frame&, const Frame&) = default;
 
   /// Nearest lattice point. Errors: kNotFinite, kOutsideLattice.

@@ -64,7 +64,7 @@ double interpolate(const terrain::Terrain& terrain, const Slots& corners, Point 
 
 std::optional<Elevation> ElevationQuery::at(Point p) {
   const auto& mesh = terrain_.mesh();
-  if (mesh.dimension() < 2) return std::nullopt;
+  if (mesh.dimension() < 2) return on_line(p);
   const auto& triangulation = terrain_.triangulation();
   const Location where =
       last_.value() == mesh::kNone ? triangulation.locate(p) : triangulation.locate_from(p, last_);
@@ -77,13 +77,28 @@ std::optional<Elevation> ElevationQuery::at(Point p) {
   if (is_void(p, corners)) return std::nullopt;
   const double z =
       where.kind == Location::Kind::kOnVertex ? terrain_.z(where.vertex) : interpolate(terrain_, corners, p);
-  Elevation found{z, {terrain_.id_of(corners[0]), terrain_.id_of(corners[1]), terrain_.id_of(corners[2])}};
-  std::rotate(found.triangle.begin(), std::min_element(found.triangle.begin(), found.triangle.end()),
-              found.triangle.end());
-  return found;
+  std::array ids{terrain_.id_of(corners[0]), terrain_.id_of(corners[1]), terrain_.id_of(corners[2])};
+  std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
+  return Elevation{z, ids};
 }
 
-bool ElevationQuery::is_void(Point p, const Slots& corners) const {
+std::optional<Elevation> ElevationQuery::on_line(Point p) const {
+  const auto& mesh = terrain_.mesh();
+  const auto line = mesh.line();
+  const auto after = std::lower_bound(line.begin(), line.end(), p,
+                                      [&mesh](VertexSlot v, Point q) { return mesh.point(v) < q; });
+  if (after == line.end()) return std::nullopt;
+  if (mesh.point(*after) == p) return Elevation{terrain_.z(*after), std::nullopt};
+  if (after == line.begin()) return std::nullopt;
+  const VertexSlot from = *(after - 1), to = *after;
+  const Point a = mesh.point(from), b = mesh.point(to);
+  if (orientation(a, b, p) != 0 || is_void(p, std::array{from, to})) return std::nullopt;
+  const double along =
+      a.x != b.x ? (double(p.x) - a.x) / (double(b.x) - a.x) : (double(p.y) - a.y) / (double(b.y) - a.y);
+  return Elevation{terrain_.z(from) + along * (terrain_.z(to) - terrain_.z(from)), std::nullopt};
+}
+
+bool ElevationQuery::is_void(Point p, std::span<const VertexSlot> corners) const {
   const terrain::SourceGrid* grid = terrain_.source_grid();
   if (voids_ == Voids::kFill || grid == nullptr || grid->valid.empty()) return false;
   const auto in_void = [grid](Point q) {

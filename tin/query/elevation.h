@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "tin/delaunay/triangulation.h"
 #include "tin/terrain/terrain.h"
@@ -19,8 +20,9 @@ namespace tin::query {
 enum class Voids { kKeep, kFill };
 
 struct Elevation {
-  double z = 0;                               // in the frame's vertical unit
-  std::array<terrain::VertexId, 3> triangle;  // counter-clockwise, the smallest id first
+  double z = 0;  // in the frame's vertical unit
+  /// Counter-clockwise, the smallest id first; nothing in a terrain without triangles.
+  std::optional<std::array<terrain::VertexId, 3>> triangle;
 };
 
 /// Answers queries one after another, each walk starting where the last ended. Borrows the terrain, which
@@ -29,14 +31,15 @@ class ElevationQuery {
  public:
   ElevationQuery(const terrain::Terrain& terrain, Voids voids) : terrain_(terrain), voids_(voids) {}
 
-  /// The elevation at `p`: a vertex's own there, else linear in the triangle; nothing outside the hull, in
-  /// voids, and in a terrain without triangles. Equal for every history of the same set. On an edge any of
-  /// the two triangles is named, the same one for the same mesh. Cost: the walk, expected O(1) for coherent
-  /// positions.
+  /// The elevation at `p`: a vertex's own there, else linear in the triangle, or, when all vertices are
+  /// collinear, along their line; nothing elsewhere and in voids. Equal for every history of the same set. On
+  /// an edge either of the two triangles is named, the same one for the same mesh. Cost: the walk, expected
+  /// O(1) for coherent positions.
   std::optional<Elevation> at(exact::Point p);
 
  private:
-  bool is_void(exact::Point p, const std::array<mesh::VertexSlot, 3>& corners) const;
+  std::optional<Elevation> on_line(exact::Point p) const;
+  bool is_void(exact::Point p, std::span<const mesh::VertexSlot> corners) const;
 
   const terrain::Terrain& terrain_;
   Voids voids_;

@@ -14,6 +14,10 @@ namespace tin::terrain {
 /// A vertex's stable id: never used again after its removal; a revert brings it back. Starts at 1.
 using VertexId = base::StrongId<struct VertexIdTag, std::uint64_t>;
 
+/// Elevations lie within +-kMaxElevation, so that sums and products of a few of them stay finite, also as
+/// floats.
+inline constexpr double kMaxElevation = 1e30;
+
 /// What to do when a vertex is inserted where one stands already.
 enum class Duplicates { kReplace, kKeep, kMean, kMax, kMin, kReject };
 
@@ -41,7 +45,8 @@ struct Placement {
   friend bool operator==(const Placement&, const Placement&) = default;
 };
 
-/// One primitive set operation: nothing before means inserted, nothing after means removed, both mean changed.
+/// One primitive set operation: nothing before means inserted, nothing after means removed, both mean
+/// changed.
 struct Step {
   VertexId id;
   std::optional<Placement> before;

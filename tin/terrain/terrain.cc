@@ -13,33 +13,46 @@ using mesh::VertexSlot;
 
 namespace {
 
-std::string place(std::size_t index) { return "/" + std::to_string(index); }
+std::string place(std::size_t index) {
+  return "/" + std::to_string(index);
+}
 
 /// What stands at a position after `count` vertices were put there already.
 double merge(Duplicates duplicates, double old_z, double new_z, std::size_t count) {
   switch (duplicates) {
-    case Duplicates::kReplace: return new_z;
-    case Duplicates::kKeep: return old_z;
-    case Duplicates::kMax: return std::max(old_z, new_z);
-    case Duplicates::kMin: return std::min(old_z, new_z);
-    case Duplicates::kMean: return old_z + (new_z - old_z) / static_cast<double>(count + 1);
-    case Duplicates::kReject: break;
+    case Duplicates::kReplace:
+      return new_z;
+    case Duplicates::kKeep:
+      return old_z;
+    case Duplicates::kMax:
+      return std::max(old_z, new_z);
+    case Duplicates::kMin:
+      return std::min(old_z, new_z);
+    case Duplicates::kMean:
+      return old_z + (new_z - old_z) / static_cast<double>(count + 1);
+    case Duplicates::kReject:
+      break;
   }
   return old_z;
+}
+
+Result<void> check_elevation(double z) {
+  if (!std::isfinite(z)) return error(Code::kNotFinite, "The elevation is not a finite number.");
+  if (std::abs(z) > kMaxElevation) return error(Code::kInvalidValue, "The elevation lies beyond +-1e30.");
+  return {};
 }
 
 Result<void> check_placement(const Placement& placement) {
   if (!exact::in_lattice(placement.at.x, placement.at.y)) {
     return error(Code::kOutsideLattice, "The position lies outside the lattice.");
   }
-  if (!std::isfinite(placement.z)) return error(Code::kNotFinite, "The elevation is not a finite number.");
-  return {};
+  return check_elevation(placement.z);
 }
 
 }  // namespace
 
-Result<Terrain> Terrain::build(frame::Frame frame, std::span<const Placement> placements, Duplicates duplicates,
-                               base::Progress* progress) {
+Result<Terrain> Terrain::build(frame::Frame frame, std::span<const Placement> placements,
+                               Duplicates duplicates, base::Progress* progress) {
   std::vector<Point> points;
   points.reserve(placements.size());
   for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -50,7 +63,8 @@ Result<Terrain> Terrain::build(frame::Frame frame, std::span<const Placement> pl
   }
   Terrain terrain(std::move(frame));
   std::vector<VertexSlot> slots;
-  if (!terrain.triangulation_.insert_many(points, slots, progress)) return error(Code::kCancelled, "Cancelled.");
+  if (!terrain.triangulation_.insert_many(points, slots, progress))
+    return error(Code::kCancelled, "Cancelled.");
   terrain.z_.resize(terrain.mesh().vertex_slots());
   std::vector<std::uint32_t> stacked(terrain.mesh().vertex_slots(), 0);
   for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -85,9 +99,11 @@ Result<Terrain> Terrain::restore(frame::Frame frame, std::span<const Vertex> ver
   std::vector<VertexSlot> slots;
   terrain.triangulation_.insert_many(points, slots);
   terrain.z_.resize(terrain.mesh().vertex_slots());
-  if (terrain.mesh().vertex_count() != vertices.size()) return error(Code::kMalformed, "Two stored vertices coincide.");
+  if (terrain.mesh().vertex_count() != vertices.size())
+    return error(Code::kMalformed, "Two stored vertices coincide.");
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (terrain.ids_.slot_of(vertices[i].id)) return error(Code::kMalformed, "Two stored vertices have one id.");
+    if (terrain.ids_.slot_of(vertices[i].id))
+      return error(Code::kMalformed, "Two stored vertices have one id.");
     terrain.ids_.bind(vertices[i].id, slots[i]);
     terrain.z_[slots[i].value()] = vertices[i].z;
     terrain.hash_.add(vertices[i].at, vertices[i].z);
@@ -98,19 +114,23 @@ Result<Terrain> Terrain::restore(frame::Frame frame, std::span<const Vertex> ver
 
 Result<Terrain::Applied> Terrain::apply(std::span<const Edit> edits, Duplicates duplicates) {
   Applied applied;
-  const VertexId next_id_before = next_id_;
+  applied.next_id_before = next_id_;
   for (std::size_t i = 0; i < edits.size(); ++i) {
-    auto id = std::visit([&](const auto& edit) { return apply_one(edit, duplicates, applied.change); }, edits[i]);
+    auto id =
+        std::visit([&](const auto& edit) { return apply_one(edit, duplicates, applied.change); }, edits[i]);
     if (!id) {
-      // Canonicity makes going back exact: the inverse steps restore the very mesh.
-      const auto restored = replay(applied.change.inverse());
-      TIN_CHECK(restored.ok());
-      next_id_ = next_id_before;
+      undo(applied);
       return error(id.error().code, id.error().message, place(i));
     }
     applied.ids.push_back(*id);
   }
   return applied;
+}
+
+/// Canonicity makes going back exact: the inverse steps restore the very mesh.
+void Terrain::undo(const Applied& applied) {
+  TIN_CHECK(replay(applied.change.inverse()).ok());
+  next_id_ = applied.next_id_before;
 }
 
 Result<VertexId> Terrain::apply_one(const Insert& edit, Duplicates duplicates, Change& change) {
@@ -133,7 +153,8 @@ Result<VertexId> Terrain::apply_one(const Insert& edit, Duplicates duplicates, C
 
 Result<VertexId> Terrain::apply_one(const Remove& edit, Duplicates, Change& change) {
   const auto slot = ids_.slot_of(edit.id);
-  if (!slot) return error(Code::kUnknownVertex, "There is no vertex " + std::to_string(edit.id.value()) + ".");
+  if (!slot)
+    return error(Code::kUnknownVertex, "There is no vertex " + std::to_string(edit.id.value()) + ".");
   const Step step{edit.id, Placement{mesh().point(*slot), z(*slot)}, std::nullopt};
   TIN_CHECK(take(step));
   change.steps.push_back(step);
@@ -142,20 +163,23 @@ Result<VertexId> Terrain::apply_one(const Remove& edit, Duplicates, Change& chan
 
 Result<VertexId> Terrain::apply_one(const Move& edit, Duplicates, Change& change) {
   const auto slot = ids_.slot_of(edit.id);
-  if (!slot) return error(Code::kUnknownVertex, "There is no vertex " + std::to_string(edit.id.value()) + ".");
+  if (!slot)
+    return error(Code::kUnknownVertex, "There is no vertex " + std::to_string(edit.id.value()) + ".");
   const Placement before{mesh().point(*slot), z(*slot)}, after{edit.to, before.z};
   if (auto fine = check_placement(after); !fine) return fine.error();
   if (before == after) return edit.id;
   const Step step{edit.id, before, after};
-  if (!take(step)) return error(Code::kDuplicatePosition, "Another vertex stands at the new position already.");
+  if (!take(step))
+    return error(Code::kDuplicatePosition, "Another vertex stands at the new position already.");
   change.steps.push_back(step);
   return edit.id;
 }
 
 Result<VertexId> Terrain::apply_one(const SetZ& edit, Duplicates, Change& change) {
   const auto slot = ids_.slot_of(edit.id);
-  if (!slot) return error(Code::kUnknownVertex, "There is no vertex " + std::to_string(edit.id.value()) + ".");
-  if (!std::isfinite(edit.z)) return error(Code::kNotFinite, "The elevation is not a finite number.");
+  if (!slot)
+    return error(Code::kUnknownVertex, "There is no vertex " + std::to_string(edit.id.value()) + ".");
+  if (auto fine = check_elevation(edit.z); !fine) return fine.error();
   const Placement before{mesh().point(*slot), z(*slot)};
   const Step step{edit.id, before, Placement{before.at, edit.z}};
   TIN_CHECK(take(step));

@@ -44,22 +44,29 @@ class Terrain {
   struct Applied {
     std::vector<VertexId> ids;
     Change change;
+    VertexId next_id_before{1};
   };
 
   explicit Terrain(frame::Frame frame) : frame_(std::move(frame)) {}
 
   /// Builds the terrain of `placements`; ids 1.. are given in their order (duplicates by the policy; the
   /// first keeps its id). Requires: positions on the lattice.
-  /// Errors: kNotFinite, kOutsideLattice, kDuplicatePosition (policy kReject), kCancelled; `where` is "/i".
+  /// Errors: kNotFinite, kInvalidValue (elevation beyond kMaxElevation), kOutsideLattice, kDuplicatePosition
+  /// (policy kReject), kCancelled; `where` is "/i".
   static base::Result<Terrain> build(frame::Frame frame, std::span<const Placement> placements,
                                      Duplicates duplicates, base::Progress* progress = nullptr);
   /// The same with given ids (a checkpoint's): ids must be distinct and positions too, else kMalformed.
-  static base::Result<Terrain> restore(frame::Frame frame, std::span<const Vertex> vertices, VertexId next_id);
+  static base::Result<Terrain> restore(frame::Frame frame, std::span<const Vertex> vertices,
+                                       VertexId next_id);
 
   /// Applies all edits or none, in order; a later edit may name a vertex that an earlier one inserted.
-  /// Errors: kUnknownVertex, kDuplicatePosition, kNotFinite, kOutsideLattice; `where` is "/i" (the edit's index).
-  /// Ensures: on error the terrain is as it was. Cost: expected O(log n) per edit.
+  /// Errors: kUnknownVertex, kDuplicatePosition, kNotFinite, kInvalidValue, kOutsideLattice; `where` is "/i"
+  /// (the edit's index). Ensures: on error the terrain is as it was. Cost: expected O(log n) per edit.
   base::Result<Applied> apply(std::span<const Edit> edits, Duplicates duplicates);
+
+  /// Takes back the last apply() as if it had never been: ids that it gave are given again. Requires: nothing
+  /// was applied or replayed since.
+  void undo(const Applied& applied);
 
   /// Repeats a recorded change (journal) or an inverse (undo), with the ids it names.
   /// Errors: kConflict when it does not fit the present set; then nothing is changed.
@@ -81,8 +88,8 @@ class Terrain {
 
   /// The vertices by ascending id, but for those in `without` (ascending).
   std::vector<Vertex> vertices_by_id(std::span<const VertexId> without = {}) const;
-  /// What is left when the vertices of these ids (ascending) are removed, built anew: the same terrain as by removing them one by
-  /// one, sooner when they are many.
+  /// What is left when the vertices of these ids (ascending) are removed, built anew: the same terrain as by
+  /// removing them one by one, sooner when they are many.
   Terrain without(std::span<const VertexId> ids) const;
 
   std::string digest() const { return hash_.digest(frame_); }

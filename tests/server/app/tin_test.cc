@@ -84,7 +84,7 @@ class TinTest : public testing::Test {
 
 TEST_F(TinTest, EditsAdvanceTheRevisionAndAreJournaled) {
   const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, SetZ{VertexId(1), 4}};
-  const auto edited = tin_.edit(edits, std::nullopt, info_);
+  const auto edited = tin_.edit(edits, {}, info_);
   ASSERT_TRUE(edited.ok());
   EXPECT_EQ(edited->revision, 2U);
   EXPECT_EQ(edited->ids, (std::vector<VertexId>{VertexId(401), VertexId(1)}));
@@ -97,21 +97,21 @@ TEST_F(TinTest, AnEditThatCannotBeStoredIsNeverSeen) {
   store_.fail = true;
   const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, Remove{VertexId(7)},
                                      MoveTo{VertexId(9), 3.3, 3.3}};
-  const auto edited = tin_.edit(edits, std::nullopt, info_);
+  const auto edited = tin_.edit(edits, {}, info_);
   ASSERT_FALSE(edited.ok());
   EXPECT_EQ(edited.error().code, Code::kStorage);
   EXPECT_EQ(digest(), before);
   EXPECT_EQ(tin_.summary().revision, 1U);
   EXPECT_EQ(broken(), "");
   store_.fail = false;
-  ASSERT_TRUE(tin_.edit(edits, std::nullopt, info_).ok());
+  ASSERT_TRUE(tin_.edit(edits, {}, info_).ok());
   EXPECT_EQ(broken(), "");
 }
 
 TEST_F(TinTest, AnExpectedRevisionThatIsGoneIsRefused) {
   const std::vector<WorldEdit> edit{SetZ{VertexId(1), 4}};
-  ASSERT_TRUE(tin_.edit(edit, 1, info_).ok());
-  const auto late = tin_.edit(edit, 1, info_);
+  ASSERT_TRUE(tin_.edit(edit, std::array<std::uint64_t, 2>{1, 77}, info_).ok());
+  const auto late = tin_.edit(edit, std::array<std::uint64_t, 2>{1, 77}, info_);
   ASSERT_FALSE(late.ok());
   EXPECT_EQ(late.error().code, Code::kPrecondition);
   EXPECT_EQ(broken(), "");
@@ -120,8 +120,8 @@ TEST_F(TinTest, AnExpectedRevisionThatIsGoneIsRefused) {
 TEST_F(TinTest, OneVertexPastTheLimitIsRefused) {
   std::vector<WorldEdit> edits;
   for (int i = 0; i < 100; ++i) edits.push_back(InsertAt{0.001 * (i + 1), 0.5, 1});
-  ASSERT_TRUE(tin_.edit(edits, std::nullopt, info_).ok()) << "500 are allowed";
-  const auto more = tin_.edit(std::vector<WorldEdit>{InsertAt{0.7, 0.7, 1}}, std::nullopt, info_);
+  ASSERT_TRUE(tin_.edit(edits, {}, info_).ok()) << "500 are allowed";
+  const auto more = tin_.edit(std::vector<WorldEdit>{InsertAt{0.7, 0.7, 1}}, {}, info_);
   ASSERT_FALSE(more.ok());
   EXPECT_EQ(more.error().code, Code::kTooLarge);
   EXPECT_EQ(broken(), "");
@@ -131,7 +131,7 @@ TEST_F(TinTest, AVersionStaysWhatItWasWhileEditsGoOn) {
   const Version version = tin_.version();
   const std::string before = version.terrain->digest();
   for (int i = 0; i < 10; ++i) {
-    ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{InsertAt{0.5 + i, 0.5, 1}}, std::nullopt, info_).ok());
+    ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{InsertAt{0.5 + i, 0.5, 1}}, {}, info_).ok());
   }
   EXPECT_EQ(version.terrain->digest(), before);
   EXPECT_EQ(version.revision, 1U);
@@ -142,8 +142,9 @@ TEST_F(TinTest, AVersionStaysWhatItWasWhileEditsGoOn) {
 
 TEST_F(TinTest, PagesGoOnFromAKeptRevisionOnly) {
   tin_.keep_for_pages(tin_.version());
-  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 4}}, std::nullopt, info_).ok());
-  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 5}}, std::nullopt, info_).ok());
+  tin_.drop_expired();
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 4}}, {}, info_).ok());
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 5}}, {}, info_).ok());
   EXPECT_EQ(tin_.page_version(1)->revision, 1U);
   EXPECT_EQ(tin_.page_version(3)->revision, 3U);
   ASSERT_FALSE(tin_.page_version(2).ok());
@@ -154,13 +155,13 @@ TEST_F(TinTest, PagesGoOnFromAKeptRevisionOnly) {
 TEST_F(TinTest, RemovalsOfAJobLeaveWhatWasEditedMeanwhile) {
   const Version seen = tin_.version();
   ASSERT_TRUE(
-      tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, std::nullopt, info_)
-          .ok());
+      tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, {}, info_).ok());
   std::vector<VertexId> ids;
   for (std::uint64_t id = 22; id < 340; ++id) ids.emplace_back(id);
   const auto landed = tin_.remove_vertices(seen, ids, info_);
   ASSERT_TRUE(landed.ok());
-  EXPECT_EQ(landed->ids.size(), ids.size() - 2);
+  EXPECT_TRUE(landed->edited_meanwhile);
+  EXPECT_EQ(landed->vertices_left, 400 - 1 - (ids.size() - 2));
   EXPECT_TRUE(tin_.read([](const Terrain& t, std::uint64_t) { return t.vertex(VertexId(22)).has_value(); }));
   EXPECT_EQ(broken(), "");
 }
@@ -175,10 +176,27 @@ TEST_F(TinTest, RemovalsBuiltAsideEqualRemovalsInPlace) {
     edits.push_back(Remove{VertexId(id)});
   }
   ASSERT_TRUE(tin_.remove_vertices(tin_.version(), many, info_).ok());
-  ASSERT_TRUE(in_place.edit(edits, std::nullopt, info_).ok());
+  ASSERT_TRUE(in_place.edit(edits, {}, info_).ok());
   EXPECT_EQ(digest(), in_place.read([](const Terrain& t, std::uint64_t) { return t.digest(); }));
   EXPECT_EQ(tin_.summary().triangle_count, in_place.summary().triangle_count);
   EXPECT_EQ(broken(), "");
+}
+
+TEST(KeptVersionsTest, LastFiveMinutesTwoAtATime) {
+  const auto terrain = std::make_shared<const Terrain>(grid_terrain(2));
+  const auto now = server::app::KeptVersions::Clock::now();
+  server::app::KeptVersions kept;
+  kept.keep({terrain, 1}, now);
+  kept.keep({terrain, 2}, now + 1min);
+  kept.keep({terrain, 1}, now + 2min);
+  kept.keep({terrain, 3}, now + 3min);
+  EXPECT_TRUE(kept.find(1, now + 4min).has_value());
+  EXPECT_FALSE(kept.find(2, now + 4min).has_value()) << "asked for the longest ago";
+  EXPECT_FALSE(kept.find(1, now + 8min).has_value());
+  EXPECT_TRUE(kept.find(3, now + 8min).has_value());
+  EXPECT_EQ(terrain.use_count(), 3);
+  kept.drop_expired(now + 9min);
+  EXPECT_EQ(terrain.use_count(), 1);
 }
 
 TEST(OpenFrameTest, IsFittedToTheFirstVerticesAndFixedThen) {
@@ -187,9 +205,9 @@ TEST(OpenFrameTest, IsFittedToTheFirstVerticesAndFixedThen) {
           store, 500);
   const std::vector<WorldEdit> far{InsertAt{5e6, 7e6, 1}, InsertAt{5e6 + 10, 7e6, 2},
                                    InsertAt{5e6, 7e6 + 10, 3}};
-  ASSERT_TRUE(tin.edit(far, std::nullopt, {}).ok());
+  ASSERT_TRUE(tin.edit(far, {}, {}).ok());
   EXPECT_EQ(tin.summary().triangle_count, 1U);
-  const auto near = tin.edit(std::vector<WorldEdit>{InsertAt{0, 0, 1}}, std::nullopt, {});
+  const auto near = tin.edit(std::vector<WorldEdit>{InsertAt{0, 0, 1}}, {}, {});
   ASSERT_FALSE(near.ok());
   EXPECT_EQ(near.error().code, Code::kOutsideLattice);
   EXPECT_EQ(near.error().where, "/0");
@@ -225,9 +243,9 @@ TEST(ConcurrencyTest, ReadersAnEditorAndALongReaderTogether) {
   });
   for (int i = 0; i < 300; ++i) {
     const double x = 0.001 * (i % 97) + 0.3;
-    ASSERT_TRUE(tin.edit(std::vector<WorldEdit>{InsertAt{x, 0.77, double(i)}, SetZ{VertexId(3), double(i)}},
-                         std::nullopt, {})
-                    .ok());
+    ASSERT_TRUE(
+        tin.edit(std::vector<WorldEdit>{InsertAt{x, 0.77, double(i)}, SetZ{VertexId(3), double(i)}}, {}, {})
+            .ok());
   }
   stop = true;
   for (auto& thread : threads) thread.join();

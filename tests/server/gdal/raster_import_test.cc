@@ -21,7 +21,7 @@ TEST_F(RasterImportTest, PutsPixelCentresOnTheLatticeInRowOrder) {
   const Import import = imported(tiff({}));
   EXPECT_EQ(import.driver, "GTiff");
   EXPECT_EQ(import.frame.crs, "EPSG:32632");
-  EXPECT_EQ(import.frame.vertical_unit, "metre");
+  EXPECT_EQ(import.frame.vertical_unit, "");
   ASSERT_EQ(import.placements.size(), 12U);
   ASSERT_TRUE(import.grid);
   const auto& grid = *import.grid;

@@ -264,6 +264,32 @@ TEST(JobQueueTest, DestructionStopsWhatRuns) {
   EXPECT_EQ(gate.started(), 1);
 }
 
+TEST(JobQueueTest, DrainingLetsFinishWhatWaitsAndTakesNothingNew) {
+  Gate gate;
+  JobQueue jobs({});
+  const auto first = jobs.submit("k", "", gate.work());
+  const auto second = jobs.submit("k", "", [](Progress&) -> Result<std::string> { return std::string("2"); });
+  ASSERT_TRUE(first.ok() && second.ok());
+  gate.await_started(1);
+  std::thread draining([&] { jobs.drain(kLong); });
+  while (jobs.submit("k", "", gate.work()).ok()) std::this_thread::yield();
+  gate.open();
+  draining.join();
+  EXPECT_FALSE(jobs.submit("k", "", gate.work()).ok());
+  EXPECT_EQ(jobs.status(*first)->state, JobState::kSuccessful);
+  EXPECT_EQ(jobs.status(*second)->state, JobState::kSuccessful);
+}
+
+TEST(JobQueueTest, DrainingStopsWhatTakesTooLong) {
+  Gate gate;
+  JobQueue jobs({});
+  const auto id = jobs.submit("k", "", gate.work());
+  ASSERT_TRUE(id.ok());
+  gate.await_started(1);
+  jobs.drain(std::chrono::milliseconds(20));
+  EXPECT_EQ(jobs.status(*id)->state, JobState::kDismissed);
+}
+
 TEST(JobQueueTest, ManyThreadsSubmitWatchAndDismiss) {
   JobQueue jobs({.workers = 3, .max_queued = 50, .max_kept = 20});
   std::atomic<int> ran{0};

@@ -59,12 +59,25 @@ TEST(ElevationTest, IsTheVertexsOwnAtAVertexAndLinearBetween) {
   EXPECT_EQ(z_at(t, {5, -5}), 4);
 }
 
-TEST(ElevationTest, IsNothingOutsideTheHullAndWithoutTriangles) {
+TEST(ElevationTest, IsNothingOutsideTheHull) {
   const Terrain t = drawn({"13", "57"});
   EXPECT_EQ(z_at(t, {11, 0}), std::nullopt);
   EXPECT_EQ(z_at(t, {-1, 1}), std::nullopt);
-  EXPECT_EQ(z_at(drawn({"1 3"}), {0, 0}), std::nullopt);
   EXPECT_EQ(z_at(Terrain{tin::frame::Frame{}}, {0, 0}), std::nullopt);
+}
+
+TEST(ElevationTest, OfCollinearVerticesIsLinearAlongTheirLine) {
+  const Terrain row = drawn({"1357"});
+  EXPECT_EQ(z_at(row, {20, 0}), 5);
+  EXPECT_EQ(z_at(row, {25, 0}), 6);
+  EXPECT_EQ(z_at(row, {25, 1}), std::nullopt);
+  EXPECT_EQ(z_at(row, {31, 0}), std::nullopt);
+  const Terrain column = drawn({"1", "3", " ", "9"});
+  EXPECT_EQ(z_at(column, {0, -5}), 2);
+  EXPECT_EQ(z_at(column, {0, -30}), 9);
+  EXPECT_EQ(z_at(column, {0, -20}), std::nullopt) << "a void";
+  EXPECT_EQ(z_at(column, {0, -20}, Voids::kFill), 6);
+  EXPECT_EQ(z_at(drawn({"4"}), {0, 0}), 4);
 }
 
 TEST(ElevationTest, OfAPlaneIsThePlaneEverywhere) {
@@ -119,9 +132,9 @@ TEST(ElevationTest, NamesTheTriangleCounterClockwiseSmallestIdFirst) {
   ElevationQuery query(t, Voids::kKeep);
   const auto found = query.at({1, -5});
   ASSERT_TRUE(found.has_value());
-  for (const VertexId id : found->triangle) EXPECT_TRUE(t.vertex(id).has_value());
-  EXPECT_LT(found->triangle[0], found->triangle[1]);
-  EXPECT_LT(found->triangle[0], found->triangle[2]);
+  const auto [a, b, c] = found->triangle.value();
+  for (const VertexId id : {a, b, c}) EXPECT_TRUE(t.vertex(id).has_value());
+  EXPECT_TRUE(a < b && a < c);
 }
 
 TEST(VoidsTest, HaveNoElevationUnlessFilled) {

@@ -27,7 +27,9 @@ using tin::terrain::Terrain;
 using tin::terrain::Vertex;
 using tin::terrain::VertexId;
 
-std::string broken(const Terrain& t) { return tin::mesh::validate(t.mesh()).value_or(""); }
+std::string broken(const Terrain& t) {
+  return tin::mesh::validate(t.mesh()).value_or("");
+}
 
 Terrain square() {
   const std::vector<Placement> corners{{{0, 0}, 1}, {{10, 0}, 2}, {{10, 10}, 3}, {{0, 10}, 4}};
@@ -57,7 +59,8 @@ TEST(TerrainTest, GivesIdsInTheOrderOfThePlacements) {
 TEST(TerrainTest, AppliesEveryKindOfEditAndUndoesThemAll) {
   Terrain t = square();
   const std::string before = t.digest();
-  const std::vector<Edit> edits{Insert{{5, 5}, 9}, SetZ{VertexId(1), 7}, Move{VertexId(5), {4, 6}}, Remove{VertexId(2)}};
+  const std::vector<Edit> edits{Insert{{5, 5}, 9}, SetZ{VertexId(1), 7}, Move{VertexId(5), {4, 6}},
+                                Remove{VertexId(2)}};
   const auto applied = t.apply(edits, Duplicates::kReject);
   ASSERT_TRUE(applied.ok());
   EXPECT_EQ(applied->ids, (std::vector<VertexId>{VertexId(5), VertexId(1), VertexId(5), VertexId(2)}));
@@ -79,11 +82,18 @@ TEST(TerrainTest, ARejectedEditChangesNothing) {
   const auto triangles = support::triangles(t.mesh());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::pair<Edit, Code>> bad{
-      {Remove{VertexId(99)}, Code::kUnknownVertex},   {Move{VertexId(99), {1, 1}}, Code::kUnknownVertex},
-      {SetZ{VertexId(99), 1}, Code::kUnknownVertex},  {SetZ{VertexId(1), nan}, Code::kNotFinite},
-      {Insert{{1, 1}, nan}, Code::kNotFinite},        {Insert{{kLatticeHalf, 0}, 1}, Code::kOutsideLattice},
-      {Insert{{0, 0}, 5}, Code::kDuplicatePosition},  {Move{VertexId(1), {10, 10}}, Code::kDuplicatePosition},
-      {Remove{VertexId(2)}, Code::kUnknownVertex},    {Move{VertexId(1), {0, -kLatticeHalf - 1}}, Code::kOutsideLattice},
+      {Remove{VertexId(99)}, Code::kUnknownVertex},
+      {Move{VertexId(99), {1, 1}}, Code::kUnknownVertex},
+      {SetZ{VertexId(99), 1}, Code::kUnknownVertex},
+      {SetZ{VertexId(1), nan}, Code::kNotFinite},
+      {Insert{{1, 1}, nan}, Code::kNotFinite},
+      {Insert{{kLatticeHalf, 0}, 1}, Code::kOutsideLattice},
+      {Insert{{0, 0}, 5}, Code::kDuplicatePosition},
+      {Move{VertexId(1), {10, 10}}, Code::kDuplicatePosition},
+      {Insert{{1, 1}, 1.1e30}, Code::kInvalidValue},
+      {SetZ{VertexId(1), -1.1e30}, Code::kInvalidValue},
+      {Remove{VertexId(2)}, Code::kUnknownVertex},
+      {Move{VertexId(1), {0, -kLatticeHalf - 1}}, Code::kOutsideLattice},
   };
   for (const auto& [edit, code] : bad) {
     const std::vector<Edit> edits{Insert{{3, 4}, 5}, Remove{VertexId(2)}, SetZ{VertexId(4), 40}, edit};
@@ -117,6 +127,15 @@ TEST(TerrainTest, DuplicatePoliciesDecideTheElevation) {
   EXPECT_EQ(rejected.error().where, "/1");
 }
 
+TEST(TerrainTest, TheMeanOfTheLargestElevationsIsFinite) {
+  const std::vector<Placement> stacked{{{0, 0}, -1e30}, {{0, 0}, 1e30}, {{5, 0}, 1e30}};
+  EXPECT_EQ(Terrain::build({}, stacked, Duplicates::kMean)->vertex(VertexId(1))->z, 0);
+  const std::vector<Placement> beyond{{{0, 0}, -1.7e308}, {{0, 0}, 1.7e308}};
+  const auto refused = Terrain::build({}, beyond, Duplicates::kMean);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, Code::kInvalidValue);
+}
+
 TEST(TerrainTest, InsertingOnAVertexFollowsThePolicyAndNamesIt) {
   Terrain t = square();
   const std::vector<Edit> edits{Insert{{10, 10}, 30}};
@@ -142,11 +161,13 @@ TEST(TerrainTest, IdsAreNeverUsedAgain) {
 TEST(TerrainTest, DigestDependsOnTheSetAndTheFrameOnly) {
   Random random(support::seed());
   std::vector<Placement> placements;
-  for (const Point p : support::random_points(random, 500, 1000)) placements.push_back({p, double(p.x) - p.y / 3.0});
+  for (const Point p : support::random_points(random, 500, 1000))
+    placements.push_back({p, double(p.x) - p.y / 3.0});
   const auto one = Terrain::build({}, placements, Duplicates::kReject);
   std::shuffle(placements.begin(), placements.end(), random);
   Terrain other{tin::frame::Frame{}};
-  for (const Placement& p : placements) ASSERT_TRUE(other.apply(std::vector<Edit>{Insert{p.at, p.z}}, Duplicates::kReject).ok());
+  for (const Placement& p : placements)
+    ASSERT_TRUE(other.apply(std::vector<Edit>{Insert{p.at, p.z}}, Duplicates::kReject).ok());
   EXPECT_EQ(one->digest(), other.digest());
   EXPECT_EQ(one->digest().size(), 32U);
   tin::frame::Frame elsewhere;
@@ -178,7 +199,8 @@ TEST(TerrainTest, ReplayRefusesAChangeThatDoesNotFit) {
   Terrain t = square();
   const auto before = contents(t);
   Change change;
-  change.steps = {{VertexId(9), std::nullopt, Placement{{1, 2}, 3}}, {VertexId(1), Placement{{0, 0}, 999}, std::nullopt}};
+  change.steps = {{VertexId(9), std::nullopt, Placement{{1, 2}, 3}},
+                  {VertexId(1), Placement{{0, 0}, 999}, std::nullopt}};
   const auto result = t.replay(change);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, Code::kConflict);
@@ -199,10 +221,17 @@ TEST(TerrainTest, RandomHistoriesUndoneStepByStepPassTheSameDigests) {
       const VertexId id(1 + random() % t.next_id().value());
       const Point p{coordinate(random), coordinate(random)};
       switch (random() % 4) {
-        case 0: edits.push_back(Remove{id}); break;
-        case 1: edits.push_back(Move{id, p}); break;
-        case 2: edits.push_back(SetZ{id, double(random() % 100)}); break;
-        default: edits.push_back(Insert{p, double(random() % 100)});
+        case 0:
+          edits.push_back(Remove{id});
+          break;
+        case 1:
+          edits.push_back(Move{id, p});
+          break;
+        case 2:
+          edits.push_back(SetZ{id, double(random() % 100)});
+          break;
+        default:
+          edits.push_back(Insert{p, double(random() % 100)});
       }
     }
     const std::string before = t.digest();
