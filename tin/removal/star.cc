@@ -1,0 +1,82 @@
+#include "tin/removal/star.h"
+
+namespace tin::removal {
+
+using mesh::HalfEdge;
+using mesh::kInfinite;
+using mesh::Mesh;
+using mesh::TriangleSlot;
+using mesh::VertexSlot;
+
+void Star::gather(const Mesh& mesh, VertexSlot v) {
+  link_.clear();
+  outside_.clear();
+  vertices_.clear();
+  at_.clear();
+  infinite_ = kNowhere;
+  removed_ = v;
+  vertices_in_mesh_ = mesh.vertex_count();
+  const exact::Point origin = mesh.point(v);
+  const TriangleSlot first = mesh.triangle_at(v);
+  TriangleSlot t = first;
+  do {
+    const int i = mesh.index_of(t, v);
+    const VertexSlot q = mesh.vertex(t, mesh::next3(i));
+    if (q == kInfinite) infinite_ = degree();
+    link_.emplace_back(t, i);
+    outside_.push_back(mesh.twin(t, i));
+    vertices_.push_back(q);
+    at_.push_back(exact::lift(mesh.point(q), origin));
+    t = mesh.twin(t, mesh::next3(i)).triangle();
+  } while (t != first);
+}
+
+bool Star::leaves_a_line() const {
+  if (!is_on_hull() || degree() != vertices_in_mesh_) return false;
+  const std::uint32_t first = infinite_ == 0 ? 1 : 0;
+  const std::uint32_t second = infinite_ == first + 1 ? first + 2 : first + 1;
+  for (std::uint32_t i = second + 1; i < degree(); ++i) {
+    if (i != infinite_ && exact::orientation(at_[first], at_[second], at_[i]) != 0) return false;
+  }
+  return true;
+}
+
+/// The infinite vertex lies straight up: with it in the determinant only the turn of the other three is left. A collinear
+/// three a, b, c, in the order of the link behind the infinite vertex, have b between a and c, and b stays on the hull:
+/// the line gives way outwards, as if it turned right. (Moving the infinite vertex a little beyond infinity, seen from
+/// the removed one, does this for all lines at once.)
+int Star::hull_sign(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  const std::int64_t turn = exact::orientation(at_[a], at_[b], at_[c]);
+  if (turn != 0) return turn > 0 ? 1 : -1;
+  const auto rank = [this](std::uint32_t i) { return i > infinite_ ? i - infinite_ : i + degree() - infinite_; };
+  const bool ascending = (rank(a) < rank(b)) == ((rank(b) < rank(c)) == (rank(a) < rank(c)));
+  return ascending ? -1 : 1;
+}
+
+bool Star::in_conflict_on_hull(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) const {
+  if (i == infinite_) return hull_sign(l, j, k) > 0;
+  if (j == infinite_) return hull_sign(i, l, k) > 0;
+  if (k == infinite_) return hull_sign(i, j, l) > 0;
+  if (l == infinite_) return hull_sign(i, j, k) < 0;
+  return exact::lifted_sign(at_[i], at_[j], at_[k], at_[l]) > 0;
+}
+
+void Star::refill(Mesh& mesh, std::span<const Ear> ears, std::vector<TriangleSlot>& fresh) {
+  TIN_DCHECK(ears.size() + 2 == link_.size());
+  fresh.clear();
+  for (std::size_t i = 0; i < ears.size(); ++i) {
+    const auto [previous, middle, next] = ears[i];
+    const TriangleSlot t = link_[i].triangle();  // k - 2 of the star's k slots are used again
+    mesh.set_triangle(t, vertices_[previous], vertices_[middle], vertices_[next]);
+    mesh.join(HalfEdge(t, 2), outside_[previous]);
+    mesh.join(HalfEdge(t, 0), outside_[middle]);
+    if (i + 1 == ears.size()) mesh.join(HalfEdge(t, 1), outside_[next]);
+    outside_[previous] = HalfEdge(t, 1);
+    fresh.push_back(t);
+  }
+  mesh.release_triangle(link_[link_.size() - 2].triangle());
+  mesh.release_triangle(link_[link_.size() - 1].triangle());
+  mesh.release_vertex(removed_);
+}
+
+}  // namespace tin::removal
