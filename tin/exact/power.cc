@@ -20,6 +20,12 @@ Limbs multiply(Uint128 a, std::uint64_t b) {
 
 using XY = std::pair<std::int64_t, std::int64_t>;
 
+/// Two roundings at most: of each half, and of the sum. (The compiler's own conversion is a function call.)
+double to_double(Uint128 value) {
+  return static_cast<double>(static_cast<std::uint64_t>(value >> 64)) * 0x1p64 +
+         static_cast<double>(static_cast<std::uint64_t>(value));
+}
+
 XY place(const Lifted& q) { return {q.x, q.y}; }
 
 /// Barycentric coefficient of the origin at the corner `q` of the ear, times the ear's orientation; 0 if q is no corner.
@@ -35,7 +41,7 @@ std::int64_t coefficient(const Corners& ear, const XY& q) {
 
 Power make_power(Int128 in_circle, std::int64_t orientation) {
   TIN_DCHECK(orientation > 0 && in_circle >= 0);
-  return {in_circle, orientation, static_cast<double>(in_circle) / static_cast<double>(orientation)};
+  return {in_circle, orientation, to_double(static_cast<Uint128>(in_circle)) / static_cast<double>(orientation)};
 }
 
 Power power(const Corners& ear) {

@@ -16,7 +16,7 @@ namespace tin::exact {
 struct Power {
   Int128 in_circle = 0;          // >= 0: the removed point lies in the circle
   std::int64_t orientation = 0;  // > 0
-  double approximate = 0;        // in_circle / orientation, relative error below 2^-51
+  double approximate = 0;        // in_circle / orientation, relative error below 2^-50
 };
 
 /// The corners of an ear, counter-clockwise.
@@ -38,7 +38,7 @@ Int128 in_circle_determinant(const PowerMinors& minors, const Lifted& c);
 
 /// Stage 1, semi-static: the sign of a - b, 0 when floating point leaves it in doubt.
 inline int compare_filtered(double a, double b) {
-  // Three roundings of relative size 2^-53 stand behind each quotient: a gap of 2^-49 of the sum is certain.
+  // Four roundings of relative size 2^-53 stand behind each quotient: a gap of 2^-49 of the sum is certain.
   const double gap = a - b, doubt = (a + b) * 0x1p-49;
   return (gap > doubt) - (gap < -doubt);
 }

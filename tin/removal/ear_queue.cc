@@ -24,8 +24,11 @@ void EarQueue::run(const Star& star, std::uint32_t stop, Tally& tally) {
 
 void EarQueue::begin(const Star& star) {
   const std::uint32_t k = star.degree();
-  ring_.resize(k);
-  candidates_.resize(k);
+  if (ring_.size() < k) {
+    ring_.resize(k);
+    candidates_.resize(k);
+    if (renewal_ == Renewal::kUpdate) minors_.resize(k);
+  }
   heap_.clear();
   ears_.clear();
   remains_.clear();
@@ -68,8 +71,8 @@ void EarQueue::renew(const Star& star, std::uint32_t node, bool same_start, Tall
   } else {
     const bool update = same_start && in_heap != kNowhere;  // else there are no minors to start from
     if (update) tally.power_update(); else tally.power_computation();
-    if (!update) ear.minors = exact::power_minors(a, b);
-    ear.power = exact::make_power(exact::in_circle_determinant(ear.minors, c), turn);
+    if (!update) minors_[node] = exact::power_minors(a, b);
+    ear.power = exact::make_power(exact::in_circle_determinant(minors_[node], c), turn);
   }
   ear.previous = previous;
   ear.next = next;
@@ -126,19 +129,28 @@ void EarQueue::drop(const Star& star, std::uint32_t node, Tally& tally) {
   if (last.node != node) sift(star, i, last, tally);
 }
 
-/// Moves the hole up or down until `entry` fits in.
+/// Moves the hole to where `entry` belongs: up, or else down along the smaller children to a leaf and from there up again,
+/// which asks about half as often as comparing with `entry` on the way down.
 template <class Tally>
 void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tally& tally) {
-  while (use_heap_ && hole > 0 && comes_before(star, entry, heap_[(hole - 1) / 2], tally)) {
+  if (!use_heap_) return put(hole, entry);
+  const std::size_t start = climb(star, hole, 0, entry, tally);
+  if (start != hole) return put(start, entry);
+  for (std::size_t child; (child = 2 * hole + 1) < heap_.size(); hole = child) {
+    if (child + 1 < heap_.size() && comes_before(star, heap_[child + 1], heap_[child], tally)) ++child;
+    put(hole, heap_[child]);
+  }
+  put(climb(star, hole, start, entry, tally), entry);
+}
+
+/// Moves the hole up, not above `top`, while its parent comes after `entry`.
+template <class Tally>
+std::size_t EarQueue::climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally) {
+  while (hole > top && comes_before(star, entry, heap_[(hole - 1) / 2], tally)) {
     put(hole, heap_[(hole - 1) / 2]);
     hole = (hole - 1) / 2;
   }
-  for (std::size_t child; use_heap_ && (child = 2 * hole + 1) < heap_.size(); hole = child) {
-    if (child + 1 < heap_.size() && comes_before(star, heap_[child + 1], heap_[child], tally)) ++child;
-    if (!comes_before(star, heap_[child], entry, tally)) break;
-    put(hole, heap_[child]);
-  }
-  put(hole, entry);
+  return hole;
 }
 
 void EarQueue::cut(std::uint32_t node) {

@@ -45,7 +45,6 @@ class EarQueue {
   /// neighbours one of them is out of date, and the heap's order must not break.
   struct Candidate {
     exact::Power power;
-    exact::PowerMinors minors;  // of the first two corners, when updating
     std::uint32_t previous, next;
   };
   struct Entry {
@@ -69,6 +68,8 @@ class EarQueue {
   void drop(const Star& star, std::uint32_t node, Tally& tally);
   template <class Tally>
   void sift(const Star& star, std::size_t hole, const Entry& entry, Tally& tally);
+  template <class Tally>
+  std::size_t climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally);
   void put(std::size_t i, const Entry& entry);
   void cut(std::uint32_t node);
 
@@ -77,8 +78,9 @@ class EarQueue {
   std::uint32_t left_ = 0;
   std::uint32_t some_node_ = 0;  // a node that is still there
   std::vector<Node> ring_;
-  std::vector<Candidate> candidates_;  // by node
-  std::vector<Entry> heap_;            // a heap, or just a set while scanning is cheaper
+  std::vector<Candidate> candidates_;       // by node
+  std::vector<exact::PowerMinors> minors_;  // by node, of the ear's first two corners; only when updating
+  std::vector<Entry> heap_;                 // a heap, or just a set while scanning is cheaper
   std::vector<Ear> ears_;
   std::vector<std::uint32_t> remains_;
 };
