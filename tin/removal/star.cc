@@ -8,27 +8,64 @@ using mesh::Mesh;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
+namespace {
+
+/// Where meshes are stored along a curve, with twice as many triangles as vertices, about half of the star's triangles lie
+/// near 2 v. It costs nothing to fetch these lines while the true place is being looked up, and it need not be right.
+void prefetch_guess(const Mesh& mesh, VertexSlot v) {
+  constexpr std::uint32_t kLine = 64 / sizeof(mesh::Triangle) + 1;
+  const std::uint32_t middle = 2 * v.value() - 1;
+  if (middle < kLine || middle + kLine >= mesh.triangle_slots()) return;
+  for (const std::uint32_t slot : {middle - kLine, middle, middle + kLine}) mesh.prefetch(TriangleSlot(slot));
+}
+
+}  // namespace
+
 void Star::gather(const Mesh& mesh, VertexSlot v) {
-  link_.clear();
-  outside_.clear();
-  vertices_.clear();
-  at_.clear();
-  infinite_ = kNowhere;
+  walk_around(mesh, v);
   removed_ = v;
   vertices_in_mesh_ = mesh.vertex_count();
+  infinite_ = kNowhere;
+  const std::uint32_t k = degree();
+  outside_.resize(k);
+  vertices_.resize(k);
+  at_.resize(k);
   const exact::Point origin = mesh.point(v);
+  for (std::uint32_t i = 0; i < k; ++i) {
+    const VertexSlot q = mesh.origin(link_[i]);
+    if (q == kInfinite) infinite_ = i;
+    outside_[i] = mesh.twin(link_[i]);
+    vertices_[i] = q;
+    at_[i] = exact::lift(mesh.point(q), origin);
+  }
+}
+
+/// Finds the link's edges in both directions at a time: each step waits for memory, but the two do not wait for each other.
+/// What will be asked of the neighbourhood next, or written there, is fetched meanwhile.
+void Star::walk_around(const Mesh& mesh, VertexSlot v) {
+  link_.clear();
+  clockwise_.clear();
+  const auto meet = [&mesh](std::vector<HalfEdge>& list, HalfEdge e) {
+    list.push_back(e);
+    mesh.prefetch(mesh.origin(e));
+    mesh.prefetch(mesh.twin(e).triangle());
+  };
+  prefetch_guess(mesh, v);
   const TriangleSlot first = mesh.triangle_at(v);
-  TriangleSlot t = first;
-  do {
-    const int i = mesh.index_of(t, v);
-    const VertexSlot q = mesh.vertex(t, mesh::next3(i));
-    if (q == kInfinite) infinite_ = degree();
-    link_.emplace_back(t, i);
-    outside_.push_back(mesh.twin(t, i));
-    vertices_.push_back(q);
-    at_.push_back(exact::lift(mesh.point(q), origin));
-    t = mesh.twin(t, mesh::next3(i)).triangle();
-  } while (t != first);
+  HalfEdge ahead(first, mesh.index_of(first, v)), behind = ahead;
+  meet(link_, ahead);
+  for (;;) {
+    // Over the edge that ends at v on the one side, and begins there on the other.
+    const HalfEdge next = mesh.twin(ahead.triangle(), mesh::next3(ahead.index()));
+    const HalfEdge last = mesh.twin(behind.triangle(), mesh::prev3(behind.index()));
+    if (next.triangle() == behind.triangle()) break;
+    ahead = HalfEdge(next.triangle(), mesh::next3(next.index()));
+    meet(link_, ahead);
+    if (last.triangle() == ahead.triangle()) break;
+    behind = HalfEdge(last.triangle(), mesh::prev3(last.index()));
+    meet(clockwise_, behind);
+  }
+  link_.insert(link_.end(), clockwise_.rbegin(), clockwise_.rend());
 }
 
 bool Star::leaves_a_line() const {

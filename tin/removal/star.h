@@ -57,6 +57,7 @@ class Star {
   void refill(mesh::Mesh& mesh, std::span<const Ear> ears, std::vector<mesh::TriangleSlot>& fresh);
 
  private:
+  void walk_around(const mesh::Mesh& mesh, mesh::VertexSlot v);
   bool in_conflict_on_hull(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) const;
   int hull_sign(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
 
@@ -64,6 +65,7 @@ class Star {
   std::size_t vertices_in_mesh_ = 0;
   std::uint32_t infinite_ = kNowhere;
   std::vector<mesh::HalfEdge> link_;
+  std::vector<mesh::HalfEdge> clockwise_;  // while walking: the part found in the other direction
   std::vector<mesh::HalfEdge> outside_;  // the other sides of the link's edges
   std::vector<mesh::VertexSlot> vertices_;
   std::vector<exact::Lifted> at_;

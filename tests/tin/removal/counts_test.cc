@@ -138,9 +138,10 @@ TEST_F(CountsTest, RandomisedRefillingIsLinearOnEveryShape) {
 }
 
 TEST_F(CountsTest, TheFilterDecidesMostComparisonsAndFailsByNatureOnTies) {
-  surround(support::star_ring(StarShape::kEllipse, StarCentre::kInside, 1000, random_));
+  // Up to here radii differ by far more than a lattice step.
+  surround(support::star_ring(StarShape::kRandom, StarCentre::kInside, 1000, random_));
   const Counters easy = count("ear3");
-  EXPECT_LT(100 * easy.filter_failures, easy.comparisons);
+  EXPECT_LT(1000 * easy.filter_failures, easy.comparisons);
   surround(support::circle_points(1000));
   const Counters ties = count("ear3");
   EXPECT_GT(ties.power_ties, 0U);
@@ -148,7 +149,7 @@ TEST_F(CountsTest, TheFilterDecidesMostComparisonsAndFailsByNatureOnTies) {
 }
 
 TEST_F(CountsTest, LowDegreesNeedFewTests) {
-  // The least numbers that tell 1, 2, 5, 14 and 42 triangulations apart are 0, 1, 2 to 3, 4 and 6.
+  // To tell 1, 2, 5, 14 and 42 triangulations apart takes 0, 1, 3, 4 and 6 tests at least in the worst case.
   std::array<std::uint64_t, 8> most{}, stars{}, total{};
   const auto points = support::random_points(random_, 4000, 1 << 20);
   std::vector<tin::mesh::VertexSlot> slots;
@@ -163,9 +164,9 @@ TEST_F(CountsTest, LowDegreesNeedFewTests) {
     most[k] = std::max(most[k], tests);
   }
   EXPECT_EQ(most, (std::array<std::uint64_t, 8>{0, 0, 0, 0, 1, 3, 6, 10}));
-  EXPECT_LT(2 * total[5], 5 * stars[5]);
-  EXPECT_LT(total[6], 5 * stars[6]);
-  EXPECT_LT(2 * total[7], 15 * stars[7]);
+  EXPECT_LT(10 * total[5], 27 * stars[5]);
+  EXPECT_LT(10 * total[6], 54 * stars[6]);
+  EXPECT_LT(10 * total[7], 86 * stars[7]);
 }
 
 }  // namespace
