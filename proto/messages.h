@@ -38,6 +38,9 @@ struct Position2 {
 /// Ids that clients may choose for a TIN: ^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$
 bool is_tin_id(std::string_view id);
 
+/// A title has at most 512 bytes and no control characters. Errors: kTooLarge, kInvalidValue.
+tin::base::Result<void> check_title(std::string_view title, std::string where);
+
 /// "replace", "keep", "mean", "max", "min" or "reject". Errors: kInvalidValue.
 tin::base::Result<tin::terrain::Duplicates> parse_duplicates(std::string_view text, std::string where);
 

@@ -106,10 +106,7 @@ Result<std::optional<std::string>> read_title(const Object& object) {
   if (!member) return std::optional<std::string>();
   auto text = member->string(kMaxTitle);
   if (!text) return std::move(text).error();
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  if (std::any_of(text->begin(), text->end(), is_control)) {
-    return member->error(Code::kInvalidValue, "a title has no control characters");
-  }
+  if (auto fine = check_title(*text, member->pointer()); !fine) return std::move(fine).error();
   return std::optional(std::string(*text));
 }
 
@@ -233,6 +230,18 @@ Result<void> read_simplify_goals(const Object& inputs, SimplifyRequest& request)
 bool is_tin_id(std::string_view id) {
   return !id.empty() && id.size() <= kMaxTinId && is_alphanumeric(id.front()) &&
          std::all_of(id.begin(), id.end(), [](char c) { return is_alphanumeric(c) || c == '_' || c == '-'; });
+}
+
+Result<void> check_title(std::string_view title, std::string where) {
+  if (title.size() > kMaxTitle) {
+    return error(Code::kTooLarge, "a title has at most " + std::to_string(kMaxTitle) + " bytes",
+                 std::move(where));
+  }
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (std::any_of(title.begin(), title.end(), is_control)) {
+    return error(Code::kInvalidValue, "a title has no control characters", std::move(where));
+  }
+  return {};
 }
 
 Result<Duplicates> parse_duplicates(std::string_view text, std::string where) {

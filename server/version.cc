@@ -2,6 +2,8 @@
 
 namespace server {
 
-std::string_view version() { return TINSMITH_VERSION; }
+std::string_view version() {
+  return TINSMITH_VERSION;
+}
 
 }  // namespace server

@@ -29,7 +29,8 @@ http::ErrorPages error_pages();
 /// A handler whose errors become problem documents.
 http::Handler guarded(std::function<Result<Response>(Request&)> handler);
 
-/// The strong entity tag of a representation of a TIN: the TIN's creation, its revision, and what was asked for.
+/// The strong entity tag of a representation of a TIN: the TIN's creation, its revision, and what was asked
+/// for.
 std::string entity_tag(const app::Tin& tin, std::uint64_t revision, const Request& request);
 /// The revision that an If-Match field asks for; nothing when it asks for none ("" or "*").
 /// Errors: kPrecondition when no tag of this TIN is in it, kMalformed.

@@ -26,7 +26,9 @@ Result<std::vector<app::WorldEdit>> to_world_edits(const proto::EditRequest& mes
     } else {
       edits.emplace_back(tin::terrain::Remove{std::get<proto::RemoveOp>(message.ops[i]).id});
     }
-    if (!at) return error(Code::kInvalidValue, "The position cannot be converted to the TIN's CRS.", "/ops/" + std::to_string(i));
+    if (!at)
+      return error(Code::kInvalidValue, "The position cannot be converted to the TIN's CRS.",
+                   "/ops/" + std::to_string(i));
   }
   return edits;
 }
@@ -37,10 +39,11 @@ Result<Response> edit(Context& context, const Request& request) {
   if (auto json = require_json(request); !json) return json.error();
   const auto expected = expected_revision(**tin, request.header("if-match"));
   if (!expected) return expected.error();
-  const auto message =
-      proto::read_edit_request(request.body, static_cast<std::size_t>(context.config.limits.edits_per_request));
+  const auto message = proto::read_edit_request(
+      request.body, static_cast<std::size_t>(context.config.limits.edits_per_request));
   if (!message) return message.error();
-  const std::string own_crs = (*tin)->read([](const auto& terrain, std::uint64_t) { return terrain.frame().crs; });
+  const std::string own_crs =
+      (*tin)->read([](const auto& terrain, std::uint64_t) { return terrain.frame().crs; });
   auto positions = Positions::between(message->crs.value_or(own_crs), own_crs, "/crs");
   if (!positions) return positions.error();
   const auto edits = to_world_edits(*message, *positions);

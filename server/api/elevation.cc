@@ -1,4 +1,6 @@
 // /tins/{tin}/elevation: one position by GET, many by POST.
+#include "tin/query/elevation.h"
+
 #include <algorithm>
 
 #include "proto/bbox.h"
@@ -6,7 +8,6 @@
 #include "server/api/answer.h"
 #include "server/api/positions.h"
 #include "server/api/routes.h"
-#include "tin/query/elevation.h"
 
 namespace server::api {
 
@@ -22,7 +23,8 @@ tin::query::Voids engine_voids(proto::Voids voids) {
 }
 
 /// The elevation at a position of the TIN's CRS, snapped to the lattice; nothing beyond the lattice either.
-std::optional<tin::query::Elevation> elevation_at(const Terrain& terrain, ElevationQuery& query, double x, double y) {
+std::optional<tin::query::Elevation> elevation_at(const Terrain& terrain, ElevationQuery& query, double x,
+                                                  double y) {
   const auto at = terrain.frame().to_lattice(x, y);
   return at ? query.at(*at) : std::nullopt;
 }
@@ -41,7 +43,8 @@ Result<Response> one(Context& context, const Request& request) {
   if (!y) return y.error();
   const auto voids = proto::parse_voids(request.query_value("voids").value_or("keep"), "query:voids");
   if (!voids) return voids.error();
-  const std::string own_crs = (*tin)->read([](const Terrain& terrain, std::uint64_t) { return terrain.frame().crs; });
+  const std::string own_crs =
+      (*tin)->read([](const Terrain& terrain, std::uint64_t) { return terrain.frame().crs; });
   std::string asked_crs = own_crs;
   if (const auto text = request.query_value("crs")) {
     const auto name = proto::parse_crs(*text, "query:crs");
@@ -71,8 +74,8 @@ Result<Response> many(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
   if (auto json = require_json(request); !json) return json.error();
-  const auto message =
-      proto::read_elevation_request(request.body, static_cast<std::size_t>(context.config.limits.positions_per_request));
+  const auto message = proto::read_elevation_request(
+      request.body, static_cast<std::size_t>(context.config.limits.positions_per_request));
   if (!message) return message.error();
   const app::Version version = (*tin)->version();
   const std::string& own_crs = version.terrain->frame().crs;

@@ -23,8 +23,9 @@ constexpr std::size_t kPiece = 64 * 1024;
 /// A GeoJSON file made while the client takes it, from one version.
 class GeoJsonSource : public http::BodySource {
  public:
-  GeoJsonSource(app::Version version, FeatureKind kind, Positions positions, const std::optional<proto::Bbox>& box,
-                Coordinates coordinates, std::optional<std::string> crs_urn)
+  GeoJsonSource(app::Version version, FeatureKind kind, Positions positions,
+                const std::optional<proto::Bbox>& box, Coordinates coordinates,
+                std::optional<std::string> crs_urn)
       : version_(std::move(version)),
         kind_(kind),
         reader_(*version_.terrain, kind, {}, std::move(positions), box),
@@ -59,14 +60,15 @@ std::string attachment(const app::Tin& tin, std::string_view suffix) {
   return "attachment; filename=\"" + tin.id() + std::string(suffix) + "\"";
 }
 
-Result<Response> geojson(const app::Tin& tin, app::Version version, const ExportRequest& wanted, FeatureKind kind) {
+Result<Response> geojson(const app::Tin& tin, app::Version version, const ExportRequest& wanted,
+                         FeatureKind kind) {
   const auto& frame = version.terrain->frame();
   auto positions = Positions::to_geojson(frame);
   Coordinates coordinates = frame.crs.empty() ? Coordinates::kProjected : Coordinates::kDegrees;
   std::optional<std::string> urn;
   if (!wanted.crs.empty()) {
     const auto crs = gdal::read_crs(wanted.crs);
-    if (!crs) return within("query:crs", crs.error());
+    if (!crs) return error(Code::kInvalidValue, crs.error().message, "query:crs");
     positions = Positions::between(frame.crs, crs->name, "query:crs");
     coordinates = crs->scale.geographic ? Coordinates::kDegrees : Coordinates::kProjected;
     if (crs->name != "EPSG:4326") urn = proto::crs_urn(crs->name);
@@ -75,7 +77,8 @@ Result<Response> geojson(const app::Tin& tin, app::Version version, const Export
   Response response;
   response.headers = {{"Content-Type", std::string(proto::formats::kGeoJsonMediaType)},
                       {"Content-Disposition", attachment(tin, ".geojson")}};
-  response.body = std::make_unique<GeoJsonSource>(std::move(version), kind, std::move(*positions), wanted.box, coordinates, urn);
+  response.body = std::make_unique<GeoJsonSource>(std::move(version), kind, std::move(*positions), wanted.box,
+                                                  coordinates, urn);
   return response;
 }
 
@@ -88,7 +91,8 @@ struct Unfinished {
   }
 };
 
-Result<Response> geotiff(const Context& context, const app::Tin& tin, const app::Version& version, const ExportRequest& wanted) {
+Result<Response> geotiff(const Context& context, const app::Tin& tin, const app::Version& version,
+                         const ExportRequest& wanted) {
   auto grid = ExportGrid::plan(*version.terrain, wanted);
   if (!grid) return grid.error();
   static std::atomic<std::uint64_t> exports{0};
@@ -99,9 +103,11 @@ Result<Response> geotiff(const Context& context, const app::Tin& tin, const app:
     grid->sample_row(row, values);
     return {};
   };
-  if (auto written = gdal::write_geotiff(file.path, grid->spec(), row_source, nullptr); !written) return written.error();
+  if (auto written = gdal::write_geotiff(file.path, grid->spec(), row_source, nullptr); !written)
+    return written.error();
   Response response;
-  response.headers = {{"Content-Type", "image/tiff; application=geotiff"}, {"Content-Disposition", attachment(tin, ".tif")}};
+  response.headers = {{"Content-Type", "image/tiff; application=geotiff"},
+                      {"Content-Disposition", attachment(tin, ".tif")}};
   response.body = http::FileBody{std::exchange(file.path, {}), true};
   return response;
 }
@@ -139,16 +145,16 @@ Result<Response> export_tin(Context& context, const Request& request) {
   if (!wanted) return wanted.error();
   const std::string collection = request.query_value("collection").value_or("triangles");
   const auto kind = feature_kind(collection);
-  if (!kind) return error(Code::kInvalidValue, "The collections are vertices and triangles.", "query:collection");
-  const auto format = request.query_value("f");
-  if (!format) return error(Code::kMalformed, "The parameter f is missing: geotiff or geojson.", "query:f");
-  if (*format != "geotiff" && *format != "geojson") {
+  if (!kind)
+    return error(Code::kInvalidValue, "The collections are vertices and triangles.", "query:collection");
+  const std::string format = request.query_value("f").value_or("geotiff");
+  if (format != "geotiff" && format != "geojson") {
     return error(Code::kInvalidValue, "The formats are geotiff and geojson.", "query:f");
   }
   app::Version version = (*tin)->version();
   const std::string tag = entity_tag(**tin, version.revision, request);
-  auto response = *format == "geotiff" ? geotiff(context, **tin, version, *wanted)
-                                       : geojson(**tin, std::move(version), *wanted, *kind);
+  auto response = format == "geotiff" ? geotiff(context, **tin, version, *wanted)
+                                      : geojson(**tin, std::move(version), *wanted, *kind);
   if (response) response->headers.emplace_back("ETag", tag);
   return response;
 }

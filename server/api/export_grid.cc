@@ -31,15 +31,19 @@ double default_cell_size(const Terrain& terrain, const Extent& extent) {
   if (!(longer > 0)) return 1;
   const auto* grid = terrain.source_grid();
   if (grid != nullptr) return longer / std::max(grid->width, grid->height);
-  return round_size_down(std::sqrt(std::max(width * height, longer * longer * 1e-6) / static_cast<double>(terrain.vertex_count())));
+  return round_size_down(std::sqrt(std::max(width * height, longer * longer * 1e-6) /
+                                   static_cast<double>(terrain.vertex_count())));
 }
 
 bool fits_float(double value) {
-  return std::isnan(value) || (std::abs(value) <= std::numeric_limits<float>::max() && static_cast<double>(static_cast<float>(value)) == value);
+  return std::isnan(value) || (std::abs(value) <= std::numeric_limits<float>::max() &&
+                               static_cast<double>(static_cast<float>(value)) == value);
 }
 
 tin::base::Error too_many_pixels(std::int64_t limit) {
-  return error(Code::kTooLarge, "The raster would have more than " + std::to_string(limit) + " pixels, the limit here.", "query:cell-size");
+  return error(Code::kTooLarge,
+               "The raster would have more than " + std::to_string(limit) + " pixels, the limit here.",
+               "query:cell-size");
 }
 
 }  // namespace
@@ -87,7 +91,8 @@ Result<ExportGrid> ExportGrid::plan(const Terrain& terrain, const ExportRequest&
 
 /// The source's grid, or the pixels of it whose centres lie in the box.
 Result<void> ExportGrid::take_source_grid(const SourceGrid& grid, const ExportRequest& request) {
-  if (std::int64_t{grid.width} * grid.height > request.max_pixels && !request.box) return too_many_pixels(request.max_pixels);
+  if (std::int64_t{grid.width} * grid.height > request.max_pixels && !request.box)
+    return too_many_pixels(request.max_pixels);
   if (!request.box) {
     take_source_window(grid, 0, 0, grid.width, grid.height);
     return {};
@@ -98,7 +103,8 @@ Result<void> ExportGrid::take_source_grid(const SourceGrid& grid, const ExportRe
     if (first > last) std::swap(first, last);
     first = std::clamp(std::ceil(first - 1e-9), 0.0, static_cast<double>(count));
     last = std::clamp(std::floor(last + 1e-9), -1.0, static_cast<double>(count) - 1);
-    return std::pair<std::int64_t, std::int64_t>(static_cast<std::int64_t>(first), static_cast<std::int64_t>(last - first) + 1);
+    return std::pair<std::int64_t, std::int64_t>(static_cast<std::int64_t>(first),
+                                                 static_cast<std::int64_t>(last - first) + 1);
   };
   const auto& gt = grid.geotransform;
   const auto [column, width] = window(request.box->min_x, request.box->max_x, gt[0], gt[1], grid.width);
@@ -111,8 +117,8 @@ Result<void> ExportGrid::take_source_grid(const SourceGrid& grid, const ExportRe
   return {};
 }
 
-void ExportGrid::take_source_window(const SourceGrid& grid, std::int64_t column, std::int64_t row, std::int64_t width,
-                                    std::int64_t height) {
+void ExportGrid::take_source_window(const SourceGrid& grid, std::int64_t column, std::int64_t row,
+                                    std::int64_t width, std::int64_t height) {
   source_ = &grid;
   first_column_ = column;
   first_row_ = row;
@@ -138,7 +144,8 @@ Result<void> ExportGrid::lay_new_grid(const ExportRequest& request, const std::s
   const double cell = request.cell_size.value_or(default_cell_size(*terrain_, *whole));
   const auto count = [cell](double length) { return std::max(1.0, std::ceil(length / cell - 1e-9)); };
   const double width = count(extent.max_x - extent.min_x), height = count(extent.max_y - extent.min_y);
-  if (!(width * height <= static_cast<double>(request.max_pixels))) return too_many_pixels(request.max_pixels);
+  if (!(width * height <= static_cast<double>(request.max_pixels)))
+    return too_many_pixels(request.max_pixels);
   spec_.width = static_cast<std::int64_t>(width);
   spec_.height = static_cast<std::int64_t>(height);
   spec_.geotransform = {extent.min_x, cell, 0, extent.max_y, 0, -cell};
@@ -148,8 +155,8 @@ Result<void> ExportGrid::lay_new_grid(const ExportRequest& request, const std::s
 /// Data type and nodata: the source's own where they can be, so that a round trip changes neither.
 void ExportGrid::choose_values() {
   const auto* source = terrain_->source_grid();
-  const bool wide = source != nullptr &&
-                    (source->data_type == "Float64" || source->data_type == "Int32" || source->data_type == "UInt32");
+  const bool wide = source != nullptr && (source->data_type == "Float64" || source->data_type == "Int32" ||
+                                          source->data_type == "UInt32");
   spec_.data_type = wide ? "Float64" : "Float32";
   const auto range = terrain_->z_range();
   const auto free = [&](double value) {
@@ -161,11 +168,14 @@ void ExportGrid::choose_values() {
 }
 
 void ExportGrid::sample_row(std::int64_t row, std::span<double> values) {
-  const auto z_or_nodata = [this](const std::optional<tin::query::Elevation>& found) { return found ? found->z : spec_.nodata; };
+  const auto z_or_nodata = [this](const std::optional<tin::query::Elevation>& found) {
+    return found ? found->z : spec_.nodata;
+  };
   if (source_ != nullptr) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto column = static_cast<std::int32_t>(first_column_ + static_cast<std::int64_t>(i));
-      values[i] = z_or_nodata(query_.at(source_->centre(column, static_cast<std::int32_t>(first_row_ + row))));
+      values[i] =
+          z_or_nodata(query_.at(source_->centre(column, static_cast<std::int32_t>(first_row_ + row))));
     }
     return;
   }

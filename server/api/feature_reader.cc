@@ -25,7 +25,8 @@ bool inside(const Position& p, const Bbox& box) {
 /// Whether the box lies wholly beyond the edge from `a` to `b` of a counter-clockwise triangle.
 bool beyond(const Position& a, const Position& b, const Bbox& box) {
   const double normal_x = b.y - a.y, normal_y = a.x - b.x;  // points outwards
-  const double nearest_x = normal_x > 0 ? box.min_x : box.max_x, nearest_y = normal_y > 0 ? box.min_y : box.max_y;
+  const double nearest_x = normal_x > 0 ? box.min_x : box.max_x,
+               nearest_y = normal_y > 0 ? box.min_y : box.max_y;
   return normal_x * (nearest_x - a.x) + normal_y * (nearest_y - a.y) > 0;
 }
 
@@ -54,8 +55,8 @@ void write_feature(proto::formats::GeoJsonWriter& writer, FeatureKind kind, cons
   }
 }
 
-FeatureReader::FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from, Positions positions,
-                             std::optional<Bbox> box)
+FeatureReader::FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from,
+                             Positions positions, std::optional<Bbox> box)
     : terrain_(terrain), kind_(kind), positions_(std::move(positions)), box_(box) {
   if (kind == FeatureKind::kVertices) {
     next_vertex_ = terrain.ids().first_from(VertexId(from.vertex));

@@ -34,9 +34,10 @@ struct Feature {
 /// Reads in chunks, so that conversion of coordinates is fast. Borrows the terrain. One thread.
 class FeatureReader {
  public:
-  /// `box` is in the coordinates that `positions` converts to. Features whose positions have no counterpart there are left out.
-  FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from, Positions positions,
-                std::optional<proto::Bbox> box);
+  /// `box` is in the coordinates that `positions` converts to. Features whose positions have no counterpart
+  /// there are left out.
+  FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from,
+                Positions positions, std::optional<proto::Bbox> box);
 
   /// The next feature inside or touching the box; nothing after the last.
   std::optional<Feature> next();

@@ -24,7 +24,8 @@ struct PageToken {
 };
 
 std::string write_token(const PageToken& token) {
-  return std::to_string(token.revision) + "." + std::to_string(token.cursor.vertex) + "." + std::to_string(token.cursor.done);
+  return std::to_string(token.revision) + "." + std::to_string(token.cursor.vertex) + "." +
+         std::to_string(token.cursor.done);
 }
 
 Result<PageToken> read_token(const std::string& text) {
@@ -67,7 +68,8 @@ Result<PageRequest> read_page_request(const Context& context, const Request& req
   if (const auto text = request.query_value("limit")) {
     const auto limit = proto::parse_count(*text, 1, UINT32_MAX, "query:limit");
     if (!limit) return limit.error();
-    page.limit = static_cast<std::size_t>(std::min<std::uint64_t>(*limit, static_cast<std::uint64_t>(limits.page_size_max)));
+    page.limit = static_cast<std::size_t>(
+        std::min<std::uint64_t>(*limit, static_cast<std::uint64_t>(limits.page_size_max)));
   }
   if (const auto text = request.query_value("bbox")) {
     const auto box = proto::parse_bbox(*text, "query:bbox");
@@ -85,7 +87,9 @@ Result<PageRequest> read_page_request(const Context& context, const Request& req
 
 std::string page_href(const PageRequest& page, const std::optional<PageToken>& token) {
   std::string href = page.path + "?limit=" + std::to_string(page.limit);
-  if (!page.bbox_text.empty()) href += "&bbox=" + page.bbox_text;
+  if (!page.bbox_text.empty()) href += "&bbox=";
+  for (const char c : page.bbox_text)
+    href += c == '+' ? "%2B" : std::string(1, c);  // "1e+5": a bare plus would be a space
   if (token) href += "&next=" + write_token(*token);
   return href;
 }
@@ -101,14 +105,16 @@ Result<Page> build_page(const PageRequest& request, const Terrain& terrain, std:
   proto::formats::CollectionHead head;
   head.number_returned = features.size();
   if (!request.box) {
-    head.number_matched = request.kind == FeatureKind::kVertices ? terrain.vertex_count() : terrain.triangle_count();
+    head.number_matched =
+        request.kind == FeatureKind::kVertices ? terrain.vertex_count() : terrain.triangle_count();
   }
   const std::string type(proto::formats::kGeoJsonMediaType);
   head.links.push_back({page_href(request, request.token), "self", type, ""});
   Page page{revision, {}, feature.has_value()};
   if (feature) head.links.push_back({page_href(request, PageToken{revision, feature->at}), "next", type, ""});
-  proto::formats::GeoJsonWriter writer(page.body, geojson_in_degrees(terrain.frame()) ? proto::formats::Coordinates::kDegrees
-                                                                                      : proto::formats::Coordinates::kProjected);
+  proto::formats::GeoJsonWriter writer(page.body, geojson_in_degrees(terrain.frame())
+                                                      ? proto::formats::Coordinates::kDegrees
+                                                      : proto::formats::Coordinates::kProjected);
   writer.begin(head);
   for (const Feature& f : features) write_feature(writer, request.kind, f);
   writer.end();
@@ -117,11 +123,12 @@ Result<Page> build_page(const PageRequest& request, const Terrain& terrain, std:
 
 /// The page from the present revision under the lock if that is quick, else from a version.
 Result<Page> make_page(const app::Tin& tin, const PageRequest& request) {
-  const auto quick = tin.read([&](const Terrain& terrain, std::uint64_t revision) -> std::optional<Result<Page>> {
-    const bool present = !request.token || request.token->revision == revision;
-    if (!present || (request.box && terrain.vertex_count() > kScanUnderLock)) return std::nullopt;
-    return build_page(request, terrain, revision);
-  });
+  const auto quick =
+      tin.read([&](const Terrain& terrain, std::uint64_t revision) -> std::optional<Result<Page>> {
+        const bool present = !request.token || request.token->revision == revision;
+        if (!present || (request.box && terrain.vertex_count() > kScanUnderLock)) return std::nullopt;
+        return build_page(request, terrain, revision);
+      });
   if (quick) return *quick;
   if (!request.token) {
     const app::Version version = tin.version();
@@ -142,14 +149,14 @@ Result<Response> items(Context& context, const Request& request) {
   if (page->has_next) {
     if (auto version = (*tin)->page_version(page->revision)) (*tin)->keep_for_pages(*version);
   }
-  Response response{200, {{"Content-Type", std::string(proto::formats::kGeoJsonMediaType)}}, std::move(page->body)};
+  Response response{
+      200, {{"Content-Type", std::string(proto::formats::kGeoJsonMediaType)}}, std::move(page->body)};
   response.headers.emplace_back("ETag", entity_tag(**tin, page->revision, request));
   return response;
 }
 
 /// The extent in CRS84, from the corners and edges of the extent in the TIN's CRS.
-std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin) {
-  const app::Summary summary = tin.summary();
+std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin, const app::Summary& summary) {
   if (!summary.bounds) return std::nullopt;
   const auto frame = tin.read([](const Terrain& terrain, std::uint64_t) { return terrain.frame(); });
   auto positions = Positions::to_geojson(frame);
@@ -159,7 +166,8 @@ std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin) {
   const auto& [low, high] = *summary.bounds;
   for (int i = 0; i <= kParts; ++i) {
     const double u = static_cast<double>(i) / kParts;
-    const double along_x = frame.x.world(low.x + u * (double(high.x) - low.x)), along_y = frame.y.world(low.y + u * (double(high.y) - low.y));
+    const double along_x = frame.x.world(low.x + u * (double(high.x) - low.x)),
+                 along_y = frame.y.world(low.y + u * (double(high.y) - low.y));
     x.insert(x.end(), {along_x, along_x, frame.x.world(low.x), frame.x.world(high.x)});
     y.insert(y.end(), {frame.y.world(low.y), frame.y.world(high.y), along_y, along_y});
   }
@@ -170,30 +178,36 @@ std::optional<std::array<double, 4>> geojson_bbox(const app::Tin& tin) {
   return std::array<double, 4>{*min_x, *min_y, *max_x, *max_y};
 }
 
-proto::CollectionDocument collection_document(const app::Tin& tin, FeatureKind kind) {
+proto::CollectionDocument collection_document(const app::Tin& tin, const app::Summary& summary,
+                                              FeatureKind kind) {
   const bool vertices = kind == FeatureKind::kVertices;
   proto::CollectionDocument document;
   document.id = vertices ? "vertices" : "triangles";
   document.title = vertices ? "Vertices" : "Triangles";
   document.description = vertices ? "The vertices of the TIN: 3D points whose ids edits use"
                                   : "The triangles of the TIN: 3D polygons with their three vertex ids";
-  document.bbox = geojson_bbox(tin);
+  document.bbox = geojson_bbox(tin, summary);
   const std::string crs = tin.read([](const Terrain& terrain, std::uint64_t) { return terrain.frame().crs; });
   if (!crs.empty()) document.crs = {std::string(proto::kCrs84Uri)};
   document.storage_crs = proto::crs_uri(crs).value_or("");
   const std::string self = "/tins/" + tin.id() + "/collections/" + document.id;
-  document.links = {{self, "self", std::string(kJson), ""},
-                    {self + "/items", "items", std::string(proto::formats::kGeoJsonMediaType), document.title}};
+  document.links = {
+      {self, "self", std::string(kJson), ""},
+      {self + "/items", "items", std::string(proto::formats::kGeoJsonMediaType), document.title}};
   return document;
 }
 
 Result<Response> collections(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
-  const std::vector<proto::CollectionDocument> documents{collection_document(**tin, FeatureKind::kVertices),
-                                                         collection_document(**tin, FeatureKind::kTriangles)};
+  const app::Summary summary = (*tin)->summary();
+  const std::vector<proto::CollectionDocument> documents{
+      collection_document(**tin, summary, FeatureKind::kVertices),
+      collection_document(**tin, summary, FeatureKind::kTriangles)};
   const std::vector<proto::Link> links{{request.path, "self", std::string(kJson), ""}};
-  return json_answer(proto::collections_json(documents, links));
+  Response response = json_answer(proto::collections_json(documents, links));
+  response.headers.emplace_back("ETag", entity_tag(**tin, summary.revision, request));
+  return response;
 }
 
 Result<Response> collection(Context& context, const Request& request) {
@@ -201,14 +215,19 @@ Result<Response> collection(Context& context, const Request& request) {
   if (!tin) return tin.error();
   const auto kind = feature_kind(request.path_parameter("collection"));
   if (!kind) return error(Code::kNotFound, "The collections are vertices and triangles.");
-  return json_answer(proto::collection_json(collection_document(**tin, *kind)));
+  const app::Summary summary = (*tin)->summary();
+  Response response = json_answer(proto::collection_json(collection_document(**tin, summary, *kind)));
+  response.headers.emplace_back("ETag", entity_tag(**tin, summary.revision, request));
+  return response;
 }
 
 }  // namespace
 
 void add_features(http::Router& router, Context& context) {
   using http::Method;
-  const auto on = [&context](auto f) { return guarded([&context, f](Request& request) { return f(context, request); }); };
+  const auto on = [&context](auto f) {
+    return guarded([&context, f](Request& request) { return f(context, request); });
+  };
   const std::string base = "/tins/{tin}/collections";
   router.add({.method = Method::kGet, .pattern = base, .handler = on(collections)});
   router.add({.method = Method::kGet, .pattern = base + "/{collection}", .handler = on(collection)});

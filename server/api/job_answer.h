@@ -12,8 +12,8 @@ proto::JobStatus job_document(const jobs::JobStatus& job);
 /// 201 with Location, Preference-Applied and the job's status.
 Response job_accepted_answer(const jobs::JobQueue& queue, const jobs::JobId& id);
 
-/// What a finished job came to: its result, or its error as a problem. Errors: kNotFound when it has not finished, kGone when
-/// it was dismissed.
+/// What a finished job came to: its result, or its error as a problem. Errors: kNotFound when it has not
+/// finished, kGone when it was dismissed.
 Result<Response> job_result_answer(const jobs::JobStatus& job);
 
 }  // namespace server::api

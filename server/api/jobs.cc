@@ -22,16 +22,23 @@ std::string rfc3339(std::int64_t unix_ms) {
 
 proto::JobState state_of(jobs::JobState state) {
   switch (state) {
-    case jobs::JobState::kAccepted: return proto::JobState::kAccepted;
-    case jobs::JobState::kRunning: return proto::JobState::kRunning;
-    case jobs::JobState::kSuccessful: return proto::JobState::kSuccessful;
-    case jobs::JobState::kFailed: return proto::JobState::kFailed;
-    case jobs::JobState::kDismissed: break;
+    case jobs::JobState::kAccepted:
+      return proto::JobState::kAccepted;
+    case jobs::JobState::kRunning:
+      return proto::JobState::kRunning;
+    case jobs::JobState::kSuccessful:
+      return proto::JobState::kSuccessful;
+    case jobs::JobState::kFailed:
+      return proto::JobState::kFailed;
+    case jobs::JobState::kDismissed:
+      break;
   }
   return proto::JobState::kDismissed;
 }
 
-tin::base::Error no_such_job(std::string_view id) { return error(Code::kNotFound, "There is no job \"" + std::string(id) + "\"."); }
+tin::base::Error no_such_job(std::string_view id) {
+  return error(Code::kNotFound, "There is no job \"" + std::string(id) + "\".");
+}
 
 Result<Response> list(const Context& context) {
   std::vector<proto::JobStatus> documents;
@@ -66,13 +73,15 @@ Result<Response> dismiss(Context& context, const Request& request) {
 }  // namespace
 
 proto::JobStatus job_document(const jobs::JobStatus& job) {
-  proto::JobStatus document{job.id, job.kind, state_of(job.state), job.progress, rfc3339(job.created_ms), "", "", job.message, {}};
+  proto::JobStatus document{
+      job.id, job.kind, state_of(job.state), job.progress, rfc3339(job.created_ms), "", "", job.message, {}};
   if (job.started_ms) document.started = rfc3339(*job.started_ms);
   if (job.finished_ms) document.finished = rfc3339(*job.finished_ms);
   if (job.error) document.message = job.error->message;
   document.links.push_back({"/jobs/" + job.id, "self", std::string(kJson), ""});
   if (job.state == jobs::JobState::kSuccessful) {
-    document.links.push_back({"/jobs/" + job.id + "/results", "http://www.opengis.net/def/rel/ogc/1.0/results", std::string(kJson), ""});
+    document.links.push_back({"/jobs/" + job.id + "/results",
+                              "http://www.opengis.net/def/rel/ogc/1.0/results", std::string(kJson), ""});
   }
   return document;
 }
@@ -87,21 +96,33 @@ Response job_accepted_answer(const jobs::JobQueue& queue, const jobs::JobId& id)
 
 Result<Response> job_result_answer(const jobs::JobStatus& job) {
   switch (job.state) {
-    case jobs::JobState::kSuccessful: return json_answer(job.result);
-    case jobs::JobState::kFailed: return *job.error;
-    case jobs::JobState::kDismissed: return error(Code::kGone, "The job was dismissed.");
+    case jobs::JobState::kSuccessful:
+      return json_answer(job.result);
+    case jobs::JobState::kFailed:
+      return *job.error;
+    case jobs::JobState::kDismissed:
+      return error(Code::kGone, "The job was dismissed.");
     case jobs::JobState::kAccepted:
-    case jobs::JobState::kRunning: break;
+    case jobs::JobState::kRunning:
+      break;
   }
   return error(Code::kNotFound, "The job has not finished yet; ask for its status.");
 }
 
 void add_jobs(http::Router& router, Context& context) {
   using http::Method;
-  router.add({.method = Method::kGet, .pattern = "/jobs", .handler = guarded([&context](Request&) { return list(context); })});
-  router.add({.method = Method::kGet, .pattern = "/jobs/{job}", .handler = guarded([&context](Request& r) { return show(context, r); })});
-  router.add({.method = Method::kDelete, .pattern = "/jobs/{job}", .handler = guarded([&context](Request& r) { return dismiss(context, r); })});
-  router.add({.method = Method::kGet, .pattern = "/jobs/{job}/results", .handler = guarded([&context](Request& r) { return results(context, r); })});
+  router.add({.method = Method::kGet, .pattern = "/jobs", .handler = guarded([&context](Request&) {
+                                                            return list(context);
+                                                          })});
+  router.add({.method = Method::kGet, .pattern = "/jobs/{job}", .handler = guarded([&context](Request& r) {
+                                                                  return show(context, r);
+                                                                })});
+  router.add({.method = Method::kDelete, .pattern = "/jobs/{job}", .handler = guarded([&context](Request& r) {
+                                                                     return dismiss(context, r);
+                                                                   })});
+  router.add({.method = Method::kGet,
+              .pattern = "/jobs/{job}/results",
+              .handler = guarded([&context](Request& r) { return results(context, r); })});
 }
 
 }  // namespace server::api

@@ -22,16 +22,21 @@ bool wants_html(const Request& request) {
 
 Result<Response> landing(const Request& request) {
   if (wants_html(request)) {
-    return Response{200, {{"Content-Type", "text/html; charset=utf-8"}, {"Vary", "Accept"}}, std::string(web::index_html())};
+    return Response{200,
+                    {{"Content-Type", "text/html; charset=utf-8"}, {"Vary", "Accept"}},
+                    std::string(web::index_html())};
   }
-  proto::Landing page{"Tinsmith", "A server for adaptive terrain TINs: canonical Delaunay triangulations that are edited while they are served.",
-                      {{"/", "self", std::string(kJson), "This document"},
-                       {"/", "alternate", "text/html", "The terrains in a browser"},
-                       {"/api", "service-desc", std::string(kOpenApiType), "The contract (OpenAPI 3.0)"},
-                       {"/conformance", "conformance", std::string(kJson), "Conformance classes"},
-                       {"/tins", "items", std::string(kJson), "The TINs"},
-                       {"/processes", "http://www.opengis.net/def/rel/ogc/1.0/processes", std::string(kJson), "Processes"},
-                       {"/jobs", "http://www.opengis.net/def/rel/ogc/1.0/job-list", std::string(kJson), "Jobs"}}};
+  proto::Landing page{
+      "Tinsmith",
+      "A server for adaptive terrain TINs: canonical Delaunay triangulations that are edited while they are "
+      "served.",
+      {{"/", "self", std::string(kJson), "This document"},
+       {"/", "alternate", "text/html", "The terrains in a browser"},
+       {"/api", "service-desc", std::string(kOpenApiType), "The contract (OpenAPI 3.0)"},
+       {"/conformance", "conformance", std::string(kJson), "Conformance classes"},
+       {"/tins", "items", std::string(kJson), "The TINs"},
+       {"/processes", "http://www.opengis.net/def/rel/ogc/1.0/processes", std::string(kJson), "Processes"},
+       {"/jobs", "http://www.opengis.net/def/rel/ogc/1.0/job-list", std::string(kJson), "Jobs"}}};
   Response response = json_answer(proto::landing_json(page));
   response.headers.emplace_back("Vary", "Accept");
   return response;
@@ -52,11 +57,16 @@ Result<Response> conformance(const Request&) {
 void add_landing(http::Router& router) {
   router.add({.method = http::Method::kGet, .pattern = "/", .handler = guarded(landing)});
   router.add({.method = http::Method::kGet, .pattern = "/conformance", .handler = guarded(conformance)});
-  router.add({.method = http::Method::kGet, .pattern = "/healthz", .handler = guarded([](Request&) -> Result<Response> {
+  router.add({.method = http::Method::kGet,
+              .pattern = "/healthz",
+              .handler = guarded([](Request&) -> Result<Response> {
                 return json_answer(proto::health_json("ok", version()));
               })});
-  router.add({.method = http::Method::kGet, .pattern = "/api", .handler = guarded([](Request&) -> Result<Response> {
-                return Response{200, {{"Content-Type", std::string(kOpenApiType)}}, std::string(proto::openapi_json())};
+  router.add({.method = http::Method::kGet,
+              .pattern = "/api",
+              .handler = guarded([](Request&) -> Result<Response> {
+                return Response{
+                    200, {{"Content-Type", std::string(kOpenApiType)}}, std::string(proto::openapi_json())};
               })});
 }
 

@@ -14,14 +14,15 @@ Result<Positions> Positions::between(std::string_view from, std::string_view to,
   Positions positions;
   if (from == to) return positions;
   if (from.empty() || to.empty()) {
-    return error(Code::kInvalidValue, "The TIN has no CRS, so positions cannot be converted.", std::move(where));
+    return error(Code::kInvalidValue, "The TIN has no CRS, so positions cannot be converted.",
+                 std::move(where));
   }
   for (std::string_view* name : {&from, &to}) {
     if (*name == "OGC:CRS84") *name = kLonLat;
   }
   if (from == to) return positions;
   auto transform = gdal::CrsTransform::create(from, to);
-  if (!transform) return error(transform.error().code, transform.error().message, std::move(where));
+  if (!transform) return error(Code::kInvalidValue, transform.error().message, std::move(where));
   positions.transform_ = std::make_unique<gdal::CrsTransform>(std::move(*transform));
   return positions;
 }
@@ -47,6 +48,8 @@ std::optional<proto::Position2> Positions::convert(proto::Position2 position) {
   return position;
 }
 
-bool geojson_in_degrees(const tin::frame::Frame& frame) { return !frame.crs.empty(); }
+bool geojson_in_degrees(const tin::frame::Frame& frame) {
+  return !frame.crs.empty();
+}
 
 }  // namespace server::api

@@ -18,8 +18,9 @@ namespace server::api {
 /// Converts x and y arrays from one CRS to another; equal CRSs cost nothing. One thread.
 class Positions {
  public:
-  /// From `from` to `to`, both as gdal::read_crs() takes them. An empty name is a local CRS, which goes with itself only.
-  /// Errors: kInvalidValue (one is local), kUnsupported, kMalformed; `where` as given.
+  /// From `from` to `to`, both as gdal::read_crs() takes them. An empty name is a local CRS, which goes with
+  /// itself only. Errors: kInvalidValue (one is local or unknown, or there is no way between them), at
+  /// `where`.
   static tin::base::Result<Positions> between(std::string_view from, std::string_view to, std::string where);
   /// From the TIN to GeoJSON's CRS84; a local CRS stays as it is.
   static tin::base::Result<Positions> to_geojson(const tin::frame::Frame& frame);

@@ -24,7 +24,8 @@ std::string results_json(const app::Simplified& done) {
   results.tolerance_met = report.tolerance_met;
   if (report.worst) {
     results.max_error_at = done.tin->read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
-      return proto::Position2{terrain.frame().x.world(report.worst->at.x), terrain.frame().y.world(report.worst->at.y)};
+      return proto::Position2{terrain.frame().x.world(report.worst->at.x),
+                              terrain.frame().y.world(report.worst->at.y)};
     });
   }
   results.rmse = report.rmse;
@@ -57,11 +58,13 @@ Result<Response> execute(Context& context, const Request& request) {
   auto wanted = read_request(context, request);
   if (!wanted) return wanted.error();
   const std::string what = wanted->tin->id();
-  const auto job = context.jobs.submit("simplify", what, [&context, wanted = std::move(*wanted)](tin::base::Progress& progress) -> Result<std::string> {
-    const auto done = app::simplify_tin(context.catalogue, wanted, progress);
-    if (!done) return done.error();
-    return results_json(*done);
-  });
+  const auto job = context.jobs.submit(
+      "simplify", what,
+      [&context, wanted = std::move(*wanted)](tin::base::Progress& progress) -> Result<std::string> {
+        const auto done = app::simplify_tin(context.catalogue, wanted, progress);
+        if (!done) return done.error();
+        return results_json(*done);
+      });
   if (!job) return job.error();
   if (!prefers_async(request)) {
     const auto finished = context.jobs.wait(*job, std::chrono::seconds(context.config.jobs.sync_seconds));
@@ -74,10 +77,13 @@ Result<Response> execute(Context& context, const Request& request) {
 
 void add_processes(http::Router& router, Context& context) {
   using http::Method;
-  router.add({.method = Method::kGet, .pattern = "/processes", .handler = guarded([](Request&) -> Result<Response> {
-                return json_answer(proto::process_list_json());
-              })});
-  router.add({.method = Method::kGet, .pattern = "/processes/{process}", .handler = guarded([](Request& request) -> Result<Response> {
+  router.add(
+      {.method = Method::kGet, .pattern = "/processes", .handler = guarded([](Request&) -> Result<Response> {
+                                                          return json_answer(proto::process_list_json());
+                                                        })});
+  router.add({.method = Method::kGet,
+              .pattern = "/processes/{process}",
+              .handler = guarded([](Request& request) -> Result<Response> {
                 const auto process = request.path_parameter("process");
                 const auto document = proto::process_json(process);
                 if (!document) return no_such_process(process);

@@ -87,7 +87,8 @@ Result<Response> show(Context& context, const Request& request) {
 }
 
 Result<Response> remove(Context& context, const Request& request) {
-  if (auto removed = context.catalogue.remove(request.path_parameter("tin")); !removed) return removed.error();
+  if (auto removed = context.catalogue.remove(request.path_parameter("tin")); !removed)
+    return removed.error();
   return Response{204, {}, std::string()};
 }
 
@@ -97,7 +98,7 @@ Result<Frame> frame_of(const proto::CreateTin& message, app::OpenResolution& ope
   tin::frame::GroundScale scale;
   if (message.crs) {
     const auto crs = gdal::read_crs(*message.crs);
-    if (!crs) return within("/crs", crs.error());
+    if (!crs) return error(Code::kInvalidValue, crs.error().message, "/crs");
     frame.crs = crs->name;
     scale = crs->scale;
     if (crs->vertical) {
@@ -114,7 +115,8 @@ Result<Frame> frame_of(const proto::CreateTin& message, app::OpenResolution& ope
     const auto& first = message.vertices.front();
     extent = {first.x, first.y, first.x, first.y};
     for (const proto::Position& v : message.vertices) {
-      extent = {std::min(extent.min_x, v.x), std::min(extent.min_y, v.y), std::max(extent.max_x, v.x), std::max(extent.max_y, v.y)};
+      extent = {std::min(extent.min_x, v.x), std::min(extent.min_y, v.y), std::max(extent.max_x, v.x),
+                std::max(extent.max_y, v.y)};
     }
   }
   const auto fitted = tin::frame::fit_points(extent, scale, resolution[0], resolution[1]);
@@ -154,7 +156,8 @@ Result<Response> create_from_json(Context& context, const Request& request) {
 Result<Response> create(Context& context, Request& request) {
   if (media_type(request) == kJson) {
     if (!request.query.empty()) {
-      return error(Code::kUnknownParameter, "With a JSON body everything stands in the body.", "query:" + request.query.front().first);
+      return error(Code::kUnknownParameter, "With a JSON body everything stands in the body.",
+                   "query:" + request.query.front().first);
     }
     return create_from_json(context, request);
   }
@@ -165,7 +168,9 @@ Result<Response> create(Context& context, Request& request) {
 
 void add_tins(http::Router& router, Context& context) {
   using http::Method;
-  const auto on = [&context](auto f) { return guarded([&context, f](Request& request) { return f(context, request); }); };
+  const auto on = [&context](auto f) {
+    return guarded([&context, f](Request& request) { return f(context, request); });
+  };
   router.add({.method = Method::kGet, .pattern = "/tins", .query = {"limit"}, .handler = on(list)});
   router.add({.method = Method::kPost,
               .pattern = "/tins",

@@ -6,6 +6,7 @@
 #include "server/api/job_answer.h"
 #include "server/api/tin_document.h"
 #include "server/app/import.h"
+#include "server/gdal/crs.h"
 
 namespace server::api {
 
@@ -22,16 +23,20 @@ Result<std::array<double, 2>> parse_resolution(const std::string& text) {
   auto y = x;
   if (comma != std::string::npos) y = proto::parse_number(text.substr(comma + 1), "query:resolution");
   if (!y) return y.error();
-  if (!(*x > 0) || !(*y > 0)) return error(Code::kInvalidValue, "A resolution must be greater than 0.", "query:resolution");
+  if (!(*x > 0) || !(*y > 0))
+    return error(Code::kInvalidValue, "A resolution must be greater than 0.", "query:resolution");
   return std::array<double, 2>{*x, *y};
 }
 
 Result<app::ImportRequest> read_request(const Context& context, const Request& request) {
   app::ImportRequest import;
   import.title = request.query_value("title").value_or("");
+  if (auto fine = proto::check_title(import.title, "query:title"); !fine) return fine.error();
   if (const auto id = request.query_value("id")) {
     if (!proto::is_tin_id(*id)) {
-      return error(Code::kInvalidValue, "An id has 1 to 64 letters, digits, '-' and '_', and begins with a letter or digit.", "query:id");
+      return error(Code::kInvalidValue,
+                   "An id has 1 to 64 letters, digits, '-' and '_', and begins with a letter or digit.",
+                   "query:id");
     }
     import.id = *id;
   }
@@ -51,6 +56,8 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   if (const auto crs = request.query_value("crs")) {
     const auto name = proto::parse_crs(*crs, "query:crs");
     if (!name) return name.error();
+    if (const auto known = gdal::read_crs(*name); !known)
+      return error(Code::kInvalidValue, known.error().message, "query:crs");
     options.crs = *name;
   }
   if (const auto text = request.query_value("resolution")) {
@@ -78,7 +85,8 @@ Result<Response> import_as_job(Context& context, Request& request, app::ImportRe
   auto file = std::make_shared<OwnedFile>(request.release_body_file());
   const std::string what = import.options.file_name.empty() ? "an upload" : import.options.file_name;
   auto job = context.jobs.submit(
-      "import", what, [&context, file, import = std::move(import)](tin::base::Progress& progress) -> Result<std::string> {
+      "import", what,
+      [&context, file, import = std::move(import)](tin::base::Progress& progress) -> Result<std::string> {
         const auto made = app::import_tin(context.catalogue, file->path, import, progress);
         if (!made) return made.error();
         return proto::tin_json(tin_document(**made));
@@ -119,12 +127,18 @@ std::string disposition_file_name(std::string_view field) {
 }
 
 Result<Response> create_from_upload(Context& context, Request& request) {
+  if (media_type(request).starts_with("multipart/")) {
+    return error(Code::kUnsupported, "The body must be the file itself, not a form that holds it.",
+                 "header:Content-Type");
+  }
   auto import = read_request(context, request);
   if (!import) return import.error();
   if (auto room = context.catalogue.check_room(import->id); !room) return room.error();
   if (prefers_async(request)) return import_as_job(context, request, std::move(*import));
   const UploadSlot slot(context.uploads);
-  if (!slot.taken()) return error(Code::kTooMany, "Too many files are being read; try again, or ask with Prefer: respond-async.");
+  if (!slot.taken())
+    return error(Code::kTooMany,
+                 "Too many files are being read; try again, or ask with Prefer: respond-async.");
   tin::base::Progress progress;
   const auto made = app::import_tin(context.catalogue, request.body_file, *import, progress);
   if (!made) return made.error();

@@ -13,7 +13,9 @@ using tin::base::error;
 using tin::base::Result;
 
 std::int64_t now_ms() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 namespace {
@@ -32,7 +34,8 @@ tin::base::Error broken(const store::TinRecord& record, const tin::base::Error& 
 
 }  // namespace
 
-Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store> store, const LimitConfig& limits) {
+Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store> store,
+                                                   const LimitConfig& limits) {
   std::unique_ptr<Catalogue> catalogue(new Catalogue(std::move(store), limits));
   auto records = catalogue->store_->list();
   if (!records) return records.error();
@@ -57,7 +60,8 @@ Result<void> Catalogue::load(const store::TinRecord& record) {
                                {"vertices", state->terrain.vertex_count()},
                                {"revision", state->revision},
                                {"digest", state->terrain.digest()}});
-  tins_[record.id] = std::make_shared<Tin>(std::move(*state), *store_, static_cast<std::size_t>(limits_.vertices_per_tin));
+  tins_[record.id] =
+      std::make_shared<Tin>(std::move(*state), *store_, static_cast<std::size_t>(limits_.vertices_per_tin));
   return {};
 }
 
@@ -93,7 +97,8 @@ Result<void> Catalogue::check_room_locked(const std::optional<std::string>& id) 
 
 Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
   if (tin.terrain.vertex_count() > static_cast<std::size_t>(limits_.vertices_per_tin)) {
-    return error(Code::kTooLarge, "A TIN may have at most " + std::to_string(limits_.vertices_per_tin) + " vertices.");
+    return error(Code::kTooLarge,
+                 "A TIN may have at most " + std::to_string(limits_.vertices_per_tin) + " vertices.");
   }
   const std::string id = tin.id.value_or(make_up_id());
   const std::string checkpoint = Tin::encode(tin.terrain, tin.duplicates, tin.open_resolution, 1);
@@ -102,24 +107,27 @@ Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
     if (auto room = check_room_locked(id); !room) return room.error();
     being_created_.insert(id);
   }
-  TinState state{{id, tin.title.empty() ? id : tin.title, now_ms()}, std::move(tin.terrain), tin.duplicates, tin.open_resolution, 1};
+  TinState state{{id, tin.title.empty() ? id : tin.title, now_ms()},
+                 std::move(tin.terrain),
+                 tin.duplicates,
+                 tin.open_resolution,
+                 1};
   const auto stored = store_->create_tin(state.record, state.revision, checkpoint);
   const std::lock_guard lock(mutex_);
   being_created_.erase(id);
   if (!stored) return stored.error();
-  auto made = std::make_shared<Tin>(std::move(state), *store_, static_cast<std::size_t>(limits_.vertices_per_tin));
+  auto made =
+      std::make_shared<Tin>(std::move(state), *store_, static_cast<std::size_t>(limits_.vertices_per_tin));
   tins_[id] = made;
   return made;
 }
 
 Result<void> Catalogue::remove(std::string_view id) {
-  std::shared_ptr<Tin> removed;  // freed after the lock
+  const auto tin = find(id);
+  if (!tin) return tin.error();
+  if (auto retired = (*tin)->retire(); !retired) return retired;
   const std::lock_guard lock(mutex_);
-  const auto found = tins_.find(id);
-  if (found == tins_.end()) return error(Code::kNotFound, "There is no TIN \"" + std::string(id) + "\".");
-  if (auto gone = store_->remove_tin(id); !gone) return gone;
-  removed = std::move(found->second);
-  tins_.erase(found);
+  tins_.erase(tins_.find(id));  // still there: as long as it is, create() refuses the id
   return {};
 }
 

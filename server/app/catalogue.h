@@ -22,7 +22,8 @@ namespace server::app {
 class Catalogue {
  public:
   /// Loads every TIN of the store. Errors: kStorage, kMalformed, kUnsupported: then the data needs a person.
-  static tin::base::Result<std::unique_ptr<Catalogue>> open(std::unique_ptr<store::Store> store, const LimitConfig& limits);
+  static tin::base::Result<std::unique_ptr<Catalogue>> open(std::unique_ptr<store::Store> store,
+                                                            const LimitConfig& limits);
 
   /// By id.
   std::vector<std::shared_ptr<Tin>> list() const;
@@ -36,15 +37,18 @@ class Catalogue {
     tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
     OpenResolution open_resolution;
   };
-  /// Stores and serves a new TIN, at revision 1. Errors: kConflict (id taken), kTooLarge (vertices), kTooMany (TINs), kStorage.
+  /// Stores and serves a new TIN, at revision 1. Errors: kConflict (id taken), kTooLarge (vertices), kTooMany
+  /// (TINs), kStorage.
   tin::base::Result<std::shared_ptr<Tin>> create(NewTin tin);
-  /// Whether create() would refuse for the id or the number of TINs: asked before long work. Errors: as create().
+  /// Whether create() would refuse for the id or the number of TINs: asked before long work. Errors: as
+  /// create().
   tin::base::Result<void> check_room(const std::optional<std::string>& id) const;
   /// Errors: kNotFound, kStorage.
   tin::base::Result<void> remove(std::string_view id);
 
  private:
-  Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits) : store_(std::move(store)), limits_(limits) {}
+  Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits)
+      : store_(std::move(store)), limits_(limits) {}
   tin::base::Result<void> load(const store::TinRecord& record);
   tin::base::Result<void> check_room_locked(const std::optional<std::string>& id) const;
 

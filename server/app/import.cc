@@ -4,15 +4,15 @@ namespace server::app {
 
 using tin::base::Result;
 
-Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file, const ImportRequest& request,
-                                        tin::base::Progress& progress) {
+Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
+                                        const ImportRequest& request, tin::base::Progress& progress) {
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
   progress.begin_phase(0, 0.3);
   auto import = gdal::import_file(file, request.options, &progress);
   if (!import) return import.error();
   progress.begin_phase(0.3, 0.9);
-  auto terrain =
-      tin::terrain::Terrain::build(std::move(import->frame), import->placements, request.duplicates, &progress);
+  auto terrain = tin::terrain::Terrain::build(std::move(import->frame), import->placements,
+                                              request.duplicates, &progress);
   if (!terrain) return terrain.error();
   import->placements = {};
   terrain->set_source_grid(import->grid);

@@ -21,6 +21,7 @@ struct ImportRequest {
 /// Reads the file, triangulates its samples and stores the TIN. Reports progress over all of it.
 /// Errors: as gdal::import_file, Terrain::build and Catalogue::create; then nothing is left behind.
 tin::base::Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
-                                                   const ImportRequest& request, tin::base::Progress& progress);
+                                                   const ImportRequest& request,
+                                                   tin::base::Progress& progress);
 
 }  // namespace server::app

@@ -6,7 +6,8 @@ namespace server::app {
 
 using tin::base::Result;
 
-Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& request, tin::base::Progress& progress) {
+Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& request,
+                                tin::base::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   if (request.as) {
     if (auto room = catalogue.check_room(request.as); !room) return room.error();
@@ -19,8 +20,9 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   Simplified result{outcome->report, request.tin, 1, 0};
   if (progress.cancelled()) return tin::base::error(tin::base::Code::kCancelled, "Cancelled.");
   if (request.as) {
-    auto made = catalogue.create({request.as, request.tin->title() + ", simplified", seen.terrain->without(outcome->removed),
-                                  request.tin->duplicates(), std::nullopt});
+    auto made =
+        catalogue.create({request.as, request.tin->title() + ", simplified",
+                          seen.terrain->without(outcome->removed), request.tin->duplicates(), std::nullopt});
     if (!made) return made.error();
     result.tin = *made;
   } else {

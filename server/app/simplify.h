@@ -18,12 +18,13 @@ struct SimplifyRequest {
 
 struct Simplified {
   tin::simplify::Report report;
-  std::shared_ptr<Tin> tin;      // the one that holds the result
-  std::uint64_t revision = 0;    // of it
+  std::shared_ptr<Tin> tin;    // the one that holds the result
+  std::uint64_t revision = 0;  // of it
   double seconds = 0;
 };
 
-/// Errors: as simplify::simplify, Catalogue::create and Tin::remove_vertices; a cancelled or failed job changes nothing.
+/// Errors: as simplify::simplify, Catalogue::create and Tin::remove_vertices; a cancelled or failed job
+/// changes nothing.
 tin::base::Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& request,
                                            tin::base::Progress& progress);
 

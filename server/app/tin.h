@@ -1,9 +1,9 @@
 // One TIN being served: its writer, and its readers.
 //
-// Short reads (an elevation, a page) run under a shared lock. Long ones (an export, a simplification) take a version(): an
-// immutable terrain that costs nothing as long as nobody edits. The first edit while a version is out copies the
-// terrain, at memory speed, and goes on with the copy; so no reader holds up an editor for longer than that. An
-// edit is journaled durably before readers see it.
+// Short reads (an elevation, a page) run under a shared lock. Long ones (an export, a simplification) take a
+// version(): an immutable terrain that costs nothing as long as nobody edits. The first edit while a version
+// is out copies the terrain, at memory speed, and goes on with the copy; so no reader holds up an editor for
+// longer than that. An edit is journaled durably before readers see it.
 #pragma once
 
 #include <array>
@@ -38,7 +38,8 @@ struct MoveTo {
 };
 using WorldEdit = std::variant<InsertAt, tin::terrain::Remove, MoveTo, tin::terrain::SetZ>;
 
-/// What becomes of a TIN's frame when its first vertices arrive: fitted to them with these lattice steps (0: chosen).
+/// What becomes of a TIN's frame when its first vertices arrive: fitted to them with these lattice steps (0:
+/// chosen).
 using OpenResolution = std::optional<std::array<double, 2>>;
 
 struct Edited {
@@ -82,7 +83,8 @@ class Tin {
   std::int64_t created_ms() const { return record_.created_ms; }
   tin::terrain::Duplicates duplicates() const { return duplicates_; }
 
-  /// Calls f(const Terrain&, revision) under the shared lock: for what takes well under a millisecond per thousand vertices asked.
+  /// Calls f(const Terrain&, revision) under the shared lock: for what takes well under a millisecond per
+  /// thousand vertices asked.
   template <class F>
   auto read(F&& f) const {
     const std::shared_lock lock(mutex_);
@@ -91,20 +93,27 @@ class Tin {
   Version version() const;
   Summary summary() const;
 
-  /// Remembers the present version for a while, so that pages can go on from it when edits arrive; see page_version().
+  /// Remembers the present version for a while, so that pages can go on from it when edits arrive; see
+  /// page_version().
   void keep_for_pages(const Version& version);
   /// The version of that revision: the present one or one kept for pages. Errors: kGone.
   tin::base::Result<Version> page_version(std::uint64_t revision) const;
 
-  /// Applies all edits or none; durable when it returns. `expected` is the revision that the client saw, if it said.
-  /// Errors: kPrecondition; as frame::to_lattice and Terrain::apply, at "/i"; kTooLarge (vertices per TIN); kStorage.
+  /// Applies all edits or none; durable when it returns. `expected` is the revision that the client saw, if
+  /// it said. Errors: kPrecondition; as frame::to_lattice and Terrain::apply, at "/i"; kTooLarge (vertices
+  /// per TIN); kStorage.
   tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, std::optional<std::uint64_t> expected,
                                  const store::RevisionInfo& info);
 
-  /// Removes the vertices as one revision; those that are gone meanwhile, or changed since `seen`, stay out of it.
-  /// Errors: kStorage.
+  /// Removes the vertices as one revision; those that are gone meanwhile, or changed since `seen`, stay out
+  /// of it. Errors: kStorage.
   tin::base::Result<Edited> remove_vertices(const Version& seen, std::span<const VertexId> ids,
                                             const store::RevisionInfo& info);
+
+  /// Removes the TIN from the store. Those who hold it still may read it; edits get kNotFound, so that none
+  /// of them, and no job that ends late, can reach a later TIN of the same id. Errors: kNotFound (it is gone
+  /// already), kStorage.
+  tin::base::Result<void> retire();
 
   /// A state as a checkpoint, and back.
   static std::string encode(const tin::terrain::Terrain& terrain, tin::terrain::Duplicates duplicates,
@@ -115,8 +124,7 @@ class Tin {
   using Terrain = tin::terrain::Terrain;
 
   void own_terrain();  // copies it if a version is out; with mutex_ held
-  tin::base::Result<void> fit_open_frame(std::span<const WorldEdit> edits);
-  tin::base::Result<std::vector<tin::terrain::Edit>> to_lattice(std::span<const WorldEdit> edits) const;
+  tin::base::Result<std::shared_ptr<Terrain>> fit_open_frame(std::span<const WorldEdit> edits) const;
   tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
 
   const store::TinRecord record_;
@@ -129,6 +137,7 @@ class Tin {
   mutable std::shared_ptr<std::atomic<int>> versions_out_;  // of terrain_
   OpenResolution open_resolution_;
   std::uint64_t revision_;
+  bool retired_ = false;
 
   mutable std::mutex cache_mutex_;
   mutable std::optional<Summary> summary_;

@@ -14,9 +14,12 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   ServeArguments arguments;
   auto* serving = app.add_subcommand("serve", "Serve TINs over HTTP until SIGTERM or SIGINT");
-  serving->add_option("--listen", arguments.listen, "Address and port, 127.0.0.1:8080 unless the configuration says otherwise; port 0 takes a free one");
+  serving->add_option(
+      "--listen", arguments.listen,
+      "Address and port, 127.0.0.1:8080 unless the configuration says otherwise; port 0 takes a free one");
   serving->add_option("--data", arguments.data, "Folder of the TINs; made if it is not there");
-  serving->add_option("--config", arguments.config, "Configuration file (JSON); see deploy/config.example.json");
+  serving->add_option("--config", arguments.config,
+                      "Configuration file (JSON); see deploy/config.example.json");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

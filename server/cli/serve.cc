@@ -52,7 +52,8 @@ http::ServerOptions http_options(const Config& config) {
   options.io_threads = static_cast<int>(config.http.io_threads);
   // Handlers may wait (for the disk, for a job), so there are more of them than cores.
   const auto by_cores = static_cast<std::int64_t>(std::max(8U, 2 * std::thread::hardware_concurrency()));
-  options.worker_threads = static_cast<int>(config.http.worker_threads == 0 ? by_cores : config.http.worker_threads);
+  options.worker_threads =
+      static_cast<int>(config.http.worker_threads == 0 ? by_cores : config.http.worker_threads);
   options.header_bytes = static_cast<std::size_t>(config.http.header_bytes);
   options.header_fields = static_cast<std::size_t>(config.http.header_fields);
   options.target_bytes = static_cast<std::size_t>(config.http.target_bytes);
@@ -82,7 +83,9 @@ http::Observer observer() {
                                       {"seconds", access.seconds},
                                       {"cut", access.cut}});
           },
-          [](const std::string& id, const std::string& text) { obs::log_error("problem", {{"id", id}, {"text", text}}); }};
+          [](const std::string& id, const std::string& text) {
+            obs::log_error("problem", {{"id", id}, {"text", text}});
+          }};
 }
 
 /// What a killed server left half-received or half-made.
@@ -119,19 +122,22 @@ int serve(const ServeArguments& arguments) {
 
   std::error_code unmade;
   std::filesystem::create_directories(config->data_dir, unmade);
-  if (unmade) return fail({tin::base::Code::kStorage, "The data folder cannot be made: " + unmade.message(), ""});
+  if (unmade)
+    return fail({tin::base::Code::kStorage, "The data folder cannot be made: " + unmade.message(), ""});
   auto store = store::open_sqlite_store(config->data_dir);
   if (!store) return fail(store.error());
   clear_temporary_files(config->data_dir);
   const auto catalogue = app::Catalogue::open(std::move(*store), config->limits);
   if (!catalogue) return fail(catalogue.error());
-  jobs::JobQueue jobs({static_cast<std::size_t>(config->jobs.workers), static_cast<std::size_t>(config->jobs.queued),
+  jobs::JobQueue jobs({static_cast<std::size_t>(config->jobs.workers),
+                       static_cast<std::size_t>(config->jobs.queued),
                        static_cast<std::size_t>(config->jobs.kept)});
   api::Context context{**catalogue, jobs, *config};
   http::Server server(http_options(*config), api::make_router(context), api::error_pages(), observer());
   const auto port = server.start();
   if (!port) return fail(port.error());
-  std::printf("Tinsmith serves %zu TINs at %s\n", (*catalogue)->list().size(), url(config->listen, *port).c_str());
+  std::printf("Tinsmith serves %zu TINs at %s\n", (*catalogue)->list().size(),
+              url(config->listen, *port).c_str());
   std::fflush(stdout);
   obs::log_info("stopping", {{"signal", wait_for_stop(signals)}});
   jobs.stop();

@@ -39,12 +39,12 @@ struct RawAnswer {
 
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port, int receive_buffer = 0)
+  explicit RawClient(std::uint16_t port, int receive_buffer = 0, int patience_seconds = 20)
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     if (socket_ < 0) throw std::runtime_error("no socket");
     if (receive_buffer > 0)
       ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
-    timeval limit{20, 0};
+    timeval limit{patience_seconds, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
     sockaddr_in address{};
     address.sin_family = AF_INET;

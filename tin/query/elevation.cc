@@ -27,11 +27,13 @@ Slots canonical_corners(const mesh::Mesh& mesh, mesh::TriangleSlot t) {
 mesh::TriangleSlot pick_at_edge(const mesh::Mesh& mesh, const Location& where) {
   const mesh::HalfEdge other = mesh.twin(where.triangle, where.index);
   if (mesh.is_infinite(other.triangle())) return where.triangle;
-  const Point here = mesh.point(mesh.vertex(where.triangle, where.index)), there = mesh.point(mesh.apex(other));
+  const Point here = mesh.point(mesh.vertex(where.triangle, where.index)),
+              there = mesh.point(mesh.apex(other));
   return here < there ? where.triangle : other.triangle();
 }
 
-/// Of the triangles at a vertex the one that follows its smallest finite neighbour counter-clockwise, if finite.
+/// Of the triangles at a vertex the one that follows its smallest finite neighbour counter-clockwise, if
+/// finite.
 mesh::TriangleSlot pick_at_vertex(const mesh::Mesh& mesh, const Location& where) {
   mesh::TriangleSlot best = where.triangle, t = where.triangle;
   std::optional<Point> smallest;
@@ -51,7 +53,8 @@ double interpolate(const terrain::Terrain& terrain, const Slots& corners, Point 
   const auto& mesh = terrain.mesh();
   const Point a = mesh.point(corners[0]), b = mesh.point(corners[1]), c = mesh.point(corners[2]);
   const double za = terrain.z(corners[0]);
-  const auto weight_b = static_cast<double>(orientation(a, p, c)), weight_c = static_cast<double>(orientation(a, b, p));
+  const auto weight_b = static_cast<double>(orientation(a, p, c)),
+             weight_c = static_cast<double>(orientation(a, b, p));
   const auto area = static_cast<double>(orientation(a, b, c));
   // Relative to one corner, so that level triangles are level to the last bit.
   return za + (weight_b * (terrain.z(corners[1]) - za) + weight_c * (terrain.z(corners[2]) - za)) / area;
@@ -72,8 +75,12 @@ std::optional<Elevation> ElevationQuery::at(Point p) {
   if (where.kind == Location::Kind::kOnVertex) t = pick_at_vertex(mesh, where);
   const Slots corners = canonical_corners(mesh, t);
   if (is_void(p, corners)) return std::nullopt;
-  const double z = where.kind == Location::Kind::kOnVertex ? terrain_.z(where.vertex) : interpolate(terrain_, corners, p);
-  return Elevation{z, {terrain_.id_of(corners[0]), terrain_.id_of(corners[1]), terrain_.id_of(corners[2])}};
+  const double z =
+      where.kind == Location::Kind::kOnVertex ? terrain_.z(where.vertex) : interpolate(terrain_, corners, p);
+  Elevation found{z, {terrain_.id_of(corners[0]), terrain_.id_of(corners[1]), terrain_.id_of(corners[2])}};
+  std::rotate(found.triangle.begin(), std::min_element(found.triangle.begin(), found.triangle.end()),
+              found.triangle.end());
+  return found;
 }
 
 bool ElevationQuery::is_void(Point p, const Slots& corners) const {

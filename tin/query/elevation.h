@@ -14,24 +14,25 @@ namespace tin::query {
 
 /// What stands where the source raster had nodata: nothing (kKeep), or the surface across (kFill).
 ///
-/// A position is void when the source cell that holds it was void and no vertex of its triangle stands in a void
-/// cell: whoever puts a vertex into a void says that there is terrain around it.
+/// A position is void when the source cell that holds it was void and no vertex of its triangle stands in a
+/// void cell: whoever puts a vertex into a void says that there is terrain around it.
 enum class Voids { kKeep, kFill };
 
 struct Elevation {
-  double z = 0;  // in the frame's vertical unit
-  std::array<terrain::VertexId, 3> triangle;
+  double z = 0;                               // in the frame's vertical unit
+  std::array<terrain::VertexId, 3> triangle;  // counter-clockwise, the smallest id first
 };
 
-/// Answers queries one after another, each walk starting where the last ended. Borrows the terrain, which must
-/// not change meanwhile. One thread; make one query object per thread.
+/// Answers queries one after another, each walk starting where the last ended. Borrows the terrain, which
+/// must not change meanwhile. One thread; make one query object per thread.
 class ElevationQuery {
  public:
   ElevationQuery(const terrain::Terrain& terrain, Voids voids) : terrain_(terrain), voids_(voids) {}
 
   /// The elevation at `p`: a vertex's own there, else linear in the triangle; nothing outside the hull, in
-  /// voids, and in a terrain without triangles. Equal for every history of the same set. On an edge any of the two triangles
-  /// is named, the same one for the same mesh. Cost: the walk, expected O(1) for coherent positions.
+  /// voids, and in a terrain without triangles. Equal for every history of the same set. On an edge any of
+  /// the two triangles is named, the same one for the same mesh. Cost: the walk, expected O(1) for coherent
+  /// positions.
   std::optional<Elevation> at(exact::Point p);
 
  private:

@@ -24,7 +24,8 @@ void triangles_of(const terrain::Terrain& terrain, VertexId vertex, std::vector<
     }
     t = mesh.twin(t, mesh::next3(i)).triangle();
   } while (t != first);
-  std::sort(out.begin(), out.end(), [](const TriangleView& l, const TriangleView& r) { return l.ids < r.ids; });
+  std::sort(out.begin(), out.end(),
+            [](const TriangleView& l, const TriangleView& r) { return l.ids < r.ids; });
 }
 
 TriangleWalk::TriangleWalk(const terrain::Terrain& terrain, TriangleCursor from)

@@ -1,5 +1,5 @@
-// Vertices and triangles in an order that depends on ids and the mesh only, for pages and exports: the same bytes from the
-// same revision, also after a restart has stored everything elsewhere.
+// Vertices and triangles in an order that depends on ids and the mesh only, for pages and exports: the same
+// bytes from the same revision, also after a restart has stored everything elsewhere.
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@ struct TriangleView {
   std::array<mesh::VertexSlot, 3> slots;
 };
 
-/// The triangles whose smallest vertex id is `vertex`, ordered by their second id. Requires: the vertex exists.
+/// The triangles whose smallest vertex id is `vertex`, ordered by their second id. Requires: the vertex
+/// exists.
 void triangles_of(const terrain::Terrain& terrain, terrain::VertexId vertex, std::vector<TriangleView>& out);
 
 /// Where a walk over all triangles stands: after `done` triangles of `vertex`.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "tin/delaunay/hilbert.h"
 
 namespace tin::simplify {
 
@@ -37,13 +40,23 @@ bool Decimation::run(const Phase& phase) {
   return !phase.cancelled();
 }
 
+/// Along the Hilbert curve: what one trial fetches from memory, the next one uses. The order does not matter
+/// otherwise.
 bool Decimation::queue_all(const Phase& phase) {
   const std::uint32_t slots = tin_.mesh().vertex_slots();
   stamps_.assign(slots, 0);
+  std::vector<std::pair<std::uint64_t, VertexSlot>> order;
+  order.reserve(slots);
   for (std::uint32_t i = 1; i < slots; ++i) {
+    const VertexSlot v(i);
+    if (tin_.mesh().is_alive(v)) order.emplace_back(delaunay::hilbert_index(tin_.mesh().point(v)), v);
+  }
+  if (phase.cancelled()) return false;
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i) {
     if (phase.cancelled()) return false;
-    if (tin_.mesh().is_alive(VertexSlot(i))) queue(VertexSlot(i));
-    if (i % 256 == 0) phase.report(static_cast<double>(i) / slots);
+    queue(order[i].second);
+    if (i % 256 == 0) phase.report(static_cast<double>(i) / static_cast<double>(order.size()));
   }
   return true;
 }

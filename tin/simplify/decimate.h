@@ -15,10 +15,10 @@ namespace tin::simplify {
 /// is gone: known from a trial deletion, and valid until its star changes.
 class Decimation {
  public:
-  /// Requires: every sample is within the tolerance (finite, >= 0). Borrows `tin`.
+  /// Where samples are over the tolerance (finite, >= 0) already, vertices around them stay. Borrows `tin`.
   Decimation(WorkingTin& tin, double tolerance) : tin_(tin), tolerance_(tolerance) {}
 
-  /// Ensures: every sample is within the tolerance still. False when cancelled.
+  /// Ensures: no sample comes over the tolerance. False when cancelled.
   bool run(const Phase& phase);
 
  private:

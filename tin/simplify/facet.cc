@@ -33,16 +33,12 @@ Facet::Facet(Corner a, Corner b, Corner c)
 }
 
 Facet::Verdict Facet::judge_exactly(Weights w, double z, double tolerance) const {
-  const auto within = within_by_integers(w, z, tolerance);
-  if (!within) return judge_by_rationals(w, z, tolerance);
-  const double distance = std::abs((b_.z - a_.z) * static_cast<double>(w.b) +
-                                   (c_.z - a_.z) * static_cast<double>(w.c) - rounded_area_ * (z - a_.z));
-  const double error = distance / rounded_area_;
-  return {*within ? std::min(error, tolerance) : error, *within};
+  const auto verdict = judge_by_integers(w, z, tolerance);
+  return verdict ? *verdict : judge_by_rationals(w, z, tolerance);
 }
 
 /// Heights that are whole multiples of 2^-10 below 2^39, as those of most rasters are; nothing for others.
-std::optional<bool> Facet::within_by_integers(Weights w, double z, double tolerance) const {
+std::optional<Facet::Verdict> Facet::judge_by_integers(Weights w, double z, double tolerance) const {
   constexpr int kShift = 10;
   std::array<std::int64_t, 4> whole{};
   const std::array<double, 4> heights{a_.z, b_.z, c_.z, z};
@@ -53,7 +49,10 @@ std::optional<bool> Facet::within_by_integers(Weights w, double z, double tolera
   }
   const Int128 distance = Int128{w.b} * (whole[1] - whole[0]) + Int128{w.c} * (whole[2] - whole[0]) -
                           Int128{area_} * (whole[3] - whole[0]);  // < 2^114
-  return (distance < 0 ? -distance : distance) <= floor_product(tolerance, kShift, area_);
+  const Int128 size = distance < 0 ? -distance : distance;
+  const bool within = size <= floor_product(tolerance, kShift, area_);
+  const double error = static_cast<double>(size) / rounded_area_ / (1 << kShift);
+  return Verdict{within ? std::min(error, tolerance) : error, within};
 }
 
 Facet::Verdict Facet::judge_by_rationals(Weights w, double z, double tolerance) const {

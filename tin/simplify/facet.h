@@ -25,7 +25,7 @@ class Facet {
     std::int64_t b = 0, c = 0;
   };
   struct Verdict {
-    double error = 0;    // vertical distance, rounded; not above the tolerance when within
+    double error = 0;    // vertical distance, rounded: 0 if it is 0, and not above the tolerance when within
     bool within = true;  // exact: |interpolated - z| <= tolerance
   };
 
@@ -50,8 +50,11 @@ class Facet {
     // Each of the three terms was rounded three times, their sum twice, the limit twice, and the difference
     // below once: 2^-49 is more than twice what that can come to. Where something overflows, no comparison
     // holds.
-    const double slack = 0x1p-49 * (magnitude(from_b) + magnitude(from_c) + magnitude(own) + limit);
-    if (distance - limit <= -slack) return {smaller(distance / rounded_area_, tolerance), true};
+    const double noise = 0x1p-49 * (magnitude(from_b) + magnitude(from_c) + magnitude(own));
+    const double slack = noise + 0x1p-49 * limit;
+    if (distance - limit <= -slack && (distance > noise || distance == 0)) {
+      return {smaller(distance / rounded_area_, tolerance), true};
+    }
     if (distance - limit > slack && slack < kHuge) return {distance / rounded_area_, false};
     return judge_exactly(w, z, tolerance);
   }
@@ -63,7 +66,7 @@ class Facet {
   static constexpr double kHuge = 0x1p+1000;
   static double magnitude(double x) { return x < 0 ? -x : x; }
   static double smaller(double x, double y) { return y < x ? y : x; }
-  std::optional<bool> within_by_integers(Weights w, double z, double tolerance) const;
+  std::optional<Verdict> judge_by_integers(Weights w, double z, double tolerance) const;
   Verdict judge_by_rationals(Weights w, double z, double tolerance) const;
 
   Corner a_, b_, c_;   // counter-clockwise

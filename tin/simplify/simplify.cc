@@ -92,12 +92,13 @@ End reduce_to_tolerance(WorkingTin& tin, double tolerance, std::size_t budget, c
 bool reduce_to_budget(WorkingTin& tin, std::size_t budget, const Phase& phase) {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kBudgetRounds; ++round) {
-    const Phase part = phase.part(round / double{kBudgetRounds}, (round + 1) / double{kBudgetRounds});
+    // Later rounds are shorter, and often there are none.
+    const Phase part = phase.part(1 - std::ldexp(1.0, -round), 1 - std::ldexp(1.0, -round - 1));
     Greedy greedy(tin, 0);
     const auto end = greedy.run(budget, part.part(0, 0.5));
     if (end == Greedy::End::kCancelled) return false;
     const double reached = end == Greedy::End::kTargetMet ? 0 : greedy.return_to_best();
-    // The error was rounded: a step up, or two for what the quotient lost, holds all samples for sure.
+    // The error was rounded; a little above it the worst sample's own star is not held up.
     const double tolerance = reached == 0 ? 0 : reached * (1 + 0x1p-40);
     if (!Decimation(tin, tolerance).run(part.part(0.5, 1))) return false;
     if (reached == 0 || reached > before * kWorthAnotherRound) return true;
@@ -122,6 +123,7 @@ Result<Outcome> certified(const Terrain& source, const WorkingTin& tin, const Op
   out.removed = std::move(certificate->removed);
   out.report = {source.vertex_count(), tin.vertex_count(), certificate->max_error,
                 certificate->worst,    certificate->rmse,  certificate->within};
+  phase.report(1);
   return out;
 }
 
@@ -129,11 +131,11 @@ Result<Outcome> certified(const Terrain& source, const WorkingTin& tin, const Op
 
 Result<Outcome> simplify(const Terrain& source, const Options& options, base::Progress* progress) {
   if (auto fine = check(options); !fine) return fine.error();
-  const bool is_flat_line = source.mesh().dimension() < 2;
-  const auto corners = is_flat_line ? std::vector<Point>() : hull_corners(source.mesh());
-  if (auto fine = check_budget(options, is_flat_line ? source.vertex_count() : corners.size()); !fine)
-    return fine.error();
-  if (is_flat_line) return nothing_removed(source);
+  const bool is_line = source.mesh().dimension() < 2;
+  const auto corners = is_line ? std::vector<Point>() : hull_corners(source.mesh());
+  const std::size_t needed = is_line ? source.vertex_count() : corners.size();
+  if (auto fine = check_budget(options, needed); !fine) return fine.error();
+  if (is_line) return nothing_removed(source);
 
   const Phase whole(progress, 0, 1), reducing = whole.part(0.05, 0.9);
   const auto samples = make_samples(source, progress);
@@ -144,13 +146,15 @@ Result<Outcome> simplify(const Terrain& source, const Options& options, base::Pr
   const std::size_t budget = options.max_vertices.value_or(Greedy::kNoBudget);
   bool to_tolerance = false;
   if (options.tolerance) {
-    const End end = reduce_to_tolerance(tin, *options.tolerance, budget, reducing);
+    const End end = reduce_to_tolerance(tin, *options.tolerance, budget,
+                                        reducing.part(0, options.max_vertices ? 0.4 : 1));
     if (end == End::kCancelled) return error(Code::kCancelled, "Cancelled.");
     to_tolerance = end == End::kDone;
   }
   if (!to_tolerance) {
     if (options.tolerance) tin = WorkingTin(*samples, corner_samples);
-    if (!reduce_to_budget(tin, budget, reducing)) return error(Code::kCancelled, "Cancelled.");
+    const Phase rest = reducing.part(options.tolerance ? 0.4 : 0, 1);
+    if (!reduce_to_budget(tin, budget, rest)) return error(Code::kCancelled, "Cancelled.");
   }
   return certified(source, tin, options, to_tolerance, whole.part(0.9, 1));
 }

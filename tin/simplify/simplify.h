@@ -58,15 +58,13 @@ struct Outcome {
 ///
 /// Units:    vertical ones of source.frame(); positions on its lattice.
 /// Errors:   kInvalidValue (no option, tolerance negative or not finite, max_vertices below what the hull
-/// needs: the
-///           message says how many), kCancelled.
-/// Ensures:  the same set of vertices gives the same answer, whatever its history; `source` is not changed.
+///           needs: the message says how many), kCancelled.
+/// Ensures:  the same set of vertices gives the same result, whatever its history (rmse up to rounding).
 /// Cost:     O(n log n) expected. Memory beyond the terrain: 4 bytes per raster cell where heights are whole
-/// multiples of
-///           a power of two (8 otherwise), 20 per sample off the raster, and about 120 per vertex kept on the
-///           way.
+///           multiples of a power of two (8 otherwise), 20 per sample off the raster, and about 150 per
+///           vertex kept on the way.
 /// Threads:  reads `source`; safe beside other readers.
-/// Source:   greedy insertion as in Garland and Heckbert 1995; deletion by Devillers' ear queue as in DESIGN.
+/// Source:   greedy insertion as in Garland and Heckbert 1995; deletion by Devillers' ear queue.
 base::Result<Outcome> simplify(const terrain::Terrain& source, const Options& options,
                                base::Progress* progress);
 

@@ -53,7 +53,7 @@ void VertexSetHash::subtract(exact::Point at, double z) {
 }
 
 std::string VertexSetHash::digest(const frame::Frame& frame) const {
-  std::array<std::uint64_t, 2> lanes{combine(low_, count_), combine(high_, count_)};
+  std::array<std::uint64_t, 2> lanes{combine(low_, count_), combine(~high_, count_)};
   for (auto& lane : lanes) {
     lane = hash_text(lane, frame.crs);
     for (const frame::Axis* axis : {&frame.x, &frame.y}) {

@@ -47,7 +47,7 @@ Checkpoint any_checkpoint(Random& random) {
   checkpoint.duplicates = static_cast<terrain::Duplicates>(testing::between(random, 0, 5));
   checkpoint.frame = {testing::any_text(random), any_axis(random), any_axis(random),
                       testing::any_text(random), std::abs(testing::any_finite(random)) + 1e-9};
-  const int vertices = testing::between(random, 0, 30);
+  const int vertices = testing::chance(random, 0.2) ? 0 : testing::between(random, 0, 30);
   std::uint64_t id = 0;
   for (int i = 0; i < vertices; ++i) {
     id +=
@@ -56,6 +56,7 @@ Checkpoint any_checkpoint(Random& random) {
     checkpoint.vertices.push_back({VertexId(id), placement.at, placement.z});
   }
   checkpoint.next_id = VertexId(id + testing::between<std::uint64_t>(random, 1, 5));
+  if (checkpoint.next_id.value() == 1 && testing::chance(random, 0.5)) checkpoint.open_resolution = {0.0, 1.5};
   if (testing::chance(random, 0.6)) checkpoint.grid = std::make_shared<const SourceGrid>(any_grid(random));
   return checkpoint;
 }
@@ -79,6 +80,7 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
   EXPECT_EQ(a.next_id, b.next_id);
   EXPECT_EQ(a.duplicates, b.duplicates);
   EXPECT_EQ(a.frame, b.frame);
+  EXPECT_EQ(a.open_resolution, b.open_resolution);
   ASSERT_EQ(a.vertices.size(), b.vertices.size());
   for (std::size_t i = 0; i < a.vertices.size(); ++i) {
     EXPECT_EQ(a.vertices[i].id, b.vertices[i].id);

@@ -1,0 +1,235 @@
+// Every operation, with every status that the document lists for it; TestServer holds each answer against its
+// schema.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/contract/test_server.h"
+
+namespace tests::contract {
+namespace {
+
+constexpr const char* kHill = R"({"id":"hill","crs":"EPSG:32617","duplicates":"reject",
+  "vertices":[[500000,4500000,10],[500100,4500000,12.5],[500000,4500100,11],[500100,4500100,14],[500050,4500040,20]]})";
+
+struct Row {
+  Ask ask;
+  int status;
+};
+
+class AnswersTest : public testing::Test {
+ protected:
+  AnswersTest()
+      : server_([](server::Config& config) {
+          config.limits.body_bytes_memory = 2048;
+          config.limits.export_pixels = 1000;
+        }) {
+    EXPECT_EQ(server_.post_json("/tins", kHill).status, 201);
+    EXPECT_EQ(server_.upload("/tins?id=grid&crs=EPSG:32617", "text/plain", ascii_grid(5, 4)).status, 201);
+    EXPECT_EQ(server_.post_json("/tins", R"({"id":"empty"})").status, 201);
+    EXPECT_EQ(server_.post_json("/tins", R"({"id":"local","vertices":[[0,0,1],[9,0,2],[0,9,3]]})").status,
+              201);
+  }
+
+  void expect(const std::vector<Row>& rows) {
+    for (const Row& row : rows) {
+      const RawAnswer answer = server_.ask(row.ask);
+      EXPECT_EQ(answer.status, row.status) << row.ask.method << " " << row.ask.target << "\n"
+                                           << answer.body.substr(0, 300);
+    }
+  }
+
+  std::string job_of(const RawAnswer& accepted) {
+    EXPECT_EQ(accepted.status, 201) << accepted.body;
+    return accepted.header("location");
+  }
+
+  void ask_service() {
+    expect({{{"GET", "/"}, 200},
+            {{"GET", "/", "", "", "Accept: text/html\r\n"}, 200},
+            {{"GET", "/?a=1"}, 400},
+            {{"GET", "/healthz"}, 200},
+            {{"GET", "/healthz?a=1"}, 400},
+            {{"GET", "/api"}, 200},
+            {{"GET", "/api?a=1"}, 400},
+            {{"GET", "/conformance"}, 200},
+            {{"GET", "/conformance?a=1"}, 400},
+            {{"GET", "/nothing"}, 404},
+            {{"GET", "/tins/"}, 404},
+            {{"OPTIONS", "/tins"}, 204},
+            {{"HEAD", "/tins/hill"}, 200}});
+  }
+
+  void ask_tins() {
+    const std::string big(3000, ' ');
+    expect({{{"GET", "/tins"}, 200},
+            {{"GET", "/tins?limit=1"}, 200},
+            {{"GET", "/tins?limit=x"}, 400},
+            {{"GET", "/tins?limit=0"}, 422},
+            {{"POST", "/tins", "application/json", R"({"id":"new"})"}, 201},
+            {{"POST", "/tins", "application/json", "{"}, 400},
+            {{"POST", "/tins?id=x", "application/json", "{}"}, 400},
+            {{"POST", "/tins", "application/json", R"({"id":"new"})"}, 409},
+            {{"POST", "/tins", "application/json", big}, 413},
+            {{"POST", "/tins", "image/tiff", "no terrain at all"}, 415},
+            {{"POST", "/tins", "application/json", R"({"vertices":[[1e300,0,0],[0,0,0]]})"}, 422},
+            {{"GET", "/tins/hill"}, 200},
+            {{"GET", "/tins/empty"}, 200},
+            {{"GET", "/tins/hill?a=1"}, 400},
+            {{"GET", "/tins/none"}, 404},
+            {{"DELETE", "/tins/new"}, 204},
+            {{"DELETE", "/tins/new"}, 404},
+            {{"DELETE", "/tins/hill?a=1"}, 400},
+            {{"PUT", "/tins/hill", "application/json", "{}"}, 405}});
+  }
+
+  void ask_edits() {
+    const std::string path = "/tins/hill/edits", json = "application/json";
+    const std::string set_z = R"({"ops":[{"op":"set-z","id":1,"z":11}]})";
+    expect({{{"POST", path, json, set_z}, 200},
+            {{"POST", path, json, R"({"ops":[]})"}, 200},
+            {{"POST", path, json,
+              R"({"crs":"EPSG:4326","ops":[{"op":"insert","x":-80.9999,"y":40.651,"z":3}]})"},
+             200},
+            {{"POST", path, json, "[]"}, 400},
+            {{"POST", "/tins/none/edits", json, set_z}, 404},
+            {{"POST", path, json, R"({"ops":[{"op":"insert","x":500000,"y":4500000,"z":1}]})"}, 409},
+            {{"POST", path, json, set_z, "If-Match: \"0-0\"\r\n"}, 412},
+            {{"POST", path, json, set_z + std::string(3000, ' ')}, 413},
+            {{"POST", path, "text/plain", set_z}, 415},
+            {{"POST", path, json, R"({"ops":[{"op":"remove","id":99}]})"}, 422},
+            {{"GET", path}, 405}});
+  }
+
+  void ask_elevations() {
+    const std::string path = "/tins/hill/elevation", json = "application/json";
+    expect({{{"GET", path + "?x=500050&y=4500040"}, 200},
+            {{"GET", path + "?x=0&y=0"}, 200},
+            {{"GET", path + "?x=-81&y=40.6505&crs=EPSG:4326"}, 200},
+            {{"GET", "/tins/grid/elevation?x=1&y=1&voids=fill"}, 200},
+            {{"GET", path + "?x=1"}, 400},
+            {{"GET", "/tins/none/elevation?x=1&y=1"}, 404},
+            {{"GET", path + "?x=1e999&y=1"}, 422},
+            {{"POST", path, json, R"({"positions":[[500050,4500040],[0,0]]})"}, 200},
+            {{"POST", path, json, R"({"positions":[]})"}, 200},
+            {{"POST", path, json, R"({"positions":[[1]]})"}, 400},
+            {{"POST", "/tins/none/elevation", json, R"({"positions":[]})"}, 404},
+            {{"POST", path, json, std::string(3000, ' ')}, 413},
+            {{"POST", path, "text/plain", R"({"positions":[]})"}, 415},
+            {{"POST", path, json, R"({"positions":[[1e999,0]]})"}, 422}});
+  }
+
+  void ask_collections() {
+    const std::string path = "/tins/hill/collections";
+    expect({{{"GET", path}, 200},
+            {{"GET", "/tins/empty/collections"}, 200},
+            {{"GET", path + "?a=1"}, 400},
+            {{"GET", "/tins/none/collections"}, 404},
+            {{"GET", path + "/vertices"}, 200},
+            {{"GET", path + "/triangles"}, 200},
+            {{"GET", path + "/vertices?a=1"}, 400},
+            {{"GET", path + "/edges"}, 404},
+            {{"GET", path + "/vertices/items"}, 200},
+            {{"GET", path + "/triangles/items?limit=1"}, 200},
+            {{"GET", "/tins/local/collections/triangles/items"}, 200},
+            {{"GET", "/tins/empty/collections/triangles/items"}, 200},
+            {{"GET", path + "/vertices/items?bbox=-82,40,-80,41"}, 200},
+            {{"GET", path + "/vertices/items?bbox=1"}, 400},
+            {{"GET", path + "/vertices/items?next=abc"}, 400},
+            {{"GET", path + "/edges/items"}, 404},
+            {{"GET", path + "/vertices/items?next=999.1.0"}, 410},
+            {{"GET", path + "/vertices/items?limit=0"}, 422}});
+  }
+
+  void ask_exports() {
+    const std::string path = "/tins/grid/export";
+    expect({{{"GET", path}, 200},
+            {{"GET", path + "?f=geotiff&cell-size=0.5"}, 200},
+            {{"GET", path + "?f=geojson"}, 200},
+            {{"GET", path + "?f=geojson&collection=vertices&crs=EPSG:32617"}, 200},
+            {{"GET", path + "?f=geojson&crs=EPSG:4326"}, 200},
+            {{"GET", path + "?cell-size=x"}, 400},
+            {{"GET", "/tins/none/export"}, 404},
+            {{"GET", path + "?cell-size=0.001"}, 413},
+            {{"GET", path + "?f=bmp"}, 422},
+            {{"GET", path + "?crs=EPSG:1"}, 422},
+            {{"GET", "/tins/empty/export"}, 422}});
+  }
+
+  void ask_processes() {
+    const std::string path = "/processes/simplify/execution", json = "application/json",
+                      async = "Prefer: respond-async\r\n";
+    const auto to = [](const std::string& goal) { return R"({"inputs":{"tin":"grid",)" + goal + "}}"; };
+    expect({{{"GET", "/processes"}, 200},
+            {{"GET", "/processes?a=1"}, 400},
+            {{"GET", "/processes/simplify"}, 200},
+            {{"GET", "/processes/simplify?a=1"}, 400},
+            {{"GET", "/processes/none"}, 404},
+            {{"POST", path, json, to(R"("tolerance":5,"as":"grid-5")")}, 200},
+            {{"POST", path, json, to(R"("maxVertices":8,"as":"grid-8")"), async}, 201},
+            {{"POST", path, json, to(R"("tolerance":"5")")}, 400},
+            {{"POST", path, json, R"({"inputs":{"tin":"none","tolerance":1}})"}, 404},
+            {{"POST", path, json, to(R"("tolerance":5,"as":"hill")")}, 409},
+            {{"POST", path, json, std::string(3000, ' ')}, 413},
+            {{"POST", path, "text/plain", "{}"}, 415},
+            {{"POST", path, json, to(R"("tolerance":-1)")}, 422}});
+    // A request that waits for its job learns that somebody dismissed it.
+    auto busy = server_.occupy_worker();
+    std::thread waiting([&] { expect({{{"POST", path, json, to(R"("tolerance":1,"as":"never")")}, 410}}); });
+    for (std::string id; id.empty();) {
+      const Json list = Json::parse(support::HttpClient(server_.port()).get("/jobs").body);
+      for (const Json& job : list.at("jobs")) {
+        if (job.at("status") == "accepted") id = job.at("jobID");
+      }
+      if (id.empty()) continue;
+      EXPECT_EQ(support::HttpClient(server_.port()).remove("/jobs/" + id).status, 200);
+    }
+    waiting.join();
+    EXPECT_EQ(server_.get("/tins/never").status, 404);
+  }
+
+  void ask_jobs() {
+    const std::string async = "Prefer: respond-async\r\n";
+    auto busy = server_.occupy_worker();
+    const auto flat = job_of(
+        server_.upload("/tins?id=flat", "text/plain", ascii_grid({{-9999, -9999}, {-9999, -9999}}), async));
+    const auto made = job_of(server_.upload("/tins?id=made", "text/plain", ascii_grid(3, 3), async));
+    const auto gone = job_of(server_.upload("/tins?id=gone", "text/plain", ascii_grid(3, 3), async));
+    expect({{{"GET", "/jobs"}, 200},
+            {{"GET", "/jobs?a=1"}, 400},
+            {{"GET", made}, 200},
+            {{"GET", made + "?a=1"}, 400},
+            {{"GET", "/jobs/none"}, 404},
+            {{"GET", made + "/results"}, 404},
+            {{"GET", made + "/results?a=1"}, 400},
+            {{"DELETE", gone + "?a=1"}, 400},
+            {{"DELETE", gone}, 200},
+            {{"DELETE", "/jobs/none"}, 404},
+            {{"GET", gone + "/results"}, 410}});
+    busy.reset();
+    EXPECT_EQ(server_.finished(made), "successful");
+    expect(
+        {{{"GET", made + "/results"}, 200}, {{"GET", flat + "/results"}, 422}, {{"GET", "/tins/gone"}, 404}});
+  }
+
+  TestServer server_;
+};
+
+TEST_F(AnswersTest, EveryDocumentedStatusIsGivenAndFitsItsSchema) {
+  ask_service();
+  ask_tins();
+  ask_edits();
+  ask_elevations();
+  ask_collections();
+  ask_exports();
+  ask_processes();
+  ask_jobs();
+  for (const std::string& status : documented_statuses()) {
+    EXPECT_TRUE(server_.answered().contains(status))
+        << status << " is documented and nothing here is answered with it";
+  }
+  EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
+}
+
+}  // namespace
+}  // namespace tests::contract

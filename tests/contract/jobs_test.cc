@@ -1,0 +1,96 @@
+// Work that is asked for now and taken later.
+#include <gtest/gtest.h>
+
+#include "tests/contract/test_server.h"
+
+namespace tests::contract {
+namespace {
+
+constexpr const char* kAsync = "Prefer: respond-async\r\n";
+
+class JobsTest : public testing::Test {
+ protected:
+  RawAnswer simplify(const std::string& inputs) {
+    return server_.post_json("/processes/simplify/execution", R"({"inputs":)" + inputs + "}", kAsync);
+  }
+  std::string finished(const std::string& job) { return server_.finished(job); }
+
+  TestServer server_;
+};
+
+TEST_F(JobsTest, AnImportAsAJobGivesWhatTheDirectOneGives) {
+  const std::string grid = ascii_grid(8, 6);
+  ASSERT_EQ(server_.upload("/tins?id=direct", "text/plain", grid).status, 201);
+  const RawAnswer accepted = server_.upload("/tins?id=later", "text/plain", grid, kAsync);
+  EXPECT_EQ(accepted.status, 201);
+  EXPECT_EQ(accepted.header("preference-applied"), "respond-async");
+  const std::string job = accepted.header("location");
+  EXPECT_EQ(finished(job), "successful");
+  const Json result = Json::parse(server_.get(job + "/results").body);
+  EXPECT_EQ(result, server_.tin("later"));
+  EXPECT_EQ(result.at("digest"), server_.tin("direct").at("digest"));
+  EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
+}
+
+TEST_F(JobsTest, AJobThatWaitsIsDismissedAndNothingIsMade) {
+  ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+  auto busy = server_.occupy_worker();
+  const std::string before = server_.state();
+  const std::string import =
+      server_.upload("/tins?id=new", "text/plain", ascii_grid(3, 3), kAsync).header("location");
+  const std::string work = simplify(R"({"tin":"grid","maxVertices":5})").header("location");
+  for (const std::string& job : {import, work}) {
+    EXPECT_EQ(Json::parse(server_.get(job).body).at("status"), "accepted");
+    EXPECT_EQ(Json::parse(server_.remove(job).body).at("status"), "dismissed");
+    EXPECT_EQ(server_.get(job + "/results").status, 410);
+  }
+  busy.reset();
+  EXPECT_EQ(server_.leftovers(), std::set<std::string>{}) << "a dismissed upload is not kept";
+  EXPECT_EQ(server_.state(), before);
+}
+
+TEST_F(JobsTest, TwoJobsForOneIdMakeOneTin) {
+  auto busy = server_.occupy_worker();
+  const std::string first =
+      server_.upload("/tins?id=one", "text/plain", ascii_grid(3, 3), kAsync).header("location");
+  const std::string second =
+      server_.upload("/tins?id=one", "text/plain", ascii_grid(4, 4), kAsync).header("location");
+  busy.reset();
+  EXPECT_EQ(finished(first), "successful");
+  EXPECT_EQ(finished(second), "failed");
+  EXPECT_EQ(slug(server_.get(second + "/results")), "conflict");
+  EXPECT_EQ(server_.tin("one").at("vertexCount"), 9);
+}
+
+/// The work began with a TIN that was deleted and made again since: its successor must not feel it.
+TEST_F(JobsTest, AJobOfADeletedTinLeavesItsSuccessorAlone) {
+  ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+  auto busy = server_.occupy_worker();
+  const std::string job = simplify(R"({"tin":"grid","maxVertices":5})").header("location");
+  ASSERT_EQ(server_.remove("/tins/grid").status, 204);
+  ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(4, 4)).status, 201);
+  const std::string before = server_.state();
+  busy.reset();
+  EXPECT_EQ(finished(job), "failed");
+  EXPECT_EQ(slug(server_.get(job + "/results")), "not-found");
+  EXPECT_EQ(server_.state(), before);
+  EXPECT_EQ(server_.post_json("/tins/grid/edits", R"({"ops":[{"op":"remove","id":1}]})").status, 200)
+      << "its journal is its own";
+}
+
+TEST_F(JobsTest, AFinishedSimplificationIsANewRevisionOfTheTinItself) {
+  ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+  const std::string job = simplify(R"({"tin":"grid","tolerance":30})").header("location");
+  EXPECT_EQ(finished(job), "successful");
+  const Json result = Json::parse(server_.get(job + "/results").body);
+  const Json tin = server_.tin("grid");
+  EXPECT_EQ(tin.at("revision"), 2);
+  EXPECT_EQ(result.at("revision"), 2);
+  EXPECT_EQ(result.at("tin"), "grid");
+  EXPECT_EQ(tin.at("vertexCount"), result.at("verticesAfter"));
+  EXPECT_LT(result.at("verticesAfter"), result.at("verticesBefore"));
+  EXPECT_LE(result.at("maxError"), 30);
+}
+
+}  // namespace
+}  // namespace tests::contract

@@ -1,0 +1,234 @@
+// Every limit of the configuration: at the limit all is well, one past it is refused and changes nothing.
+#include <gtest/gtest.h>
+
+#include "tests/contract/test_server.h"
+
+namespace tests::contract {
+namespace {
+
+std::string repeated(const std::string& item, int count) {
+  std::string list;
+  for (int i = 0; i < count; ++i) list += (i == 0 ? "" : ",") + item;
+  return list;
+}
+
+/// `count` vertices on a parabola, from the `first` on.
+std::string vertices(int count, int first = 0) {
+  std::string list;
+  for (int i = first; i < first + count; ++i) {
+    list += (i == first ? "[" : ",[") + std::to_string(i) + "," + std::to_string(i * i) + "," +
+            std::to_string(i) + "]";
+  }
+  return "[" + list + "]";
+}
+
+std::string inserts(int count, int first) {
+  std::string list;
+  for (int i = first; i < first + count; ++i) {
+    list += (i == first ? "" : ",") + (R"({"op":"insert","x":)" + std::to_string(i) + R"(,"y":)") +
+            std::to_string(i * i) + R"(,"z":1})";
+  }
+  return R"({"ops":[)" + list + "]}";
+}
+
+void expect_too_large(const RawAnswer& answer) {
+  EXPECT_EQ(answer.status, 413) << answer.body.substr(0, 300);
+  EXPECT_EQ(slug(answer), "too-large");
+}
+
+TEST(LimitsTest, EditsInARequest) {
+  TestServer server([](server::Config& config) { config.limits.edits_per_request = 5; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(4) + "}").status, 201);
+  const std::string op = R"({"op":"set-z","id":1,"z":7})";
+  EXPECT_EQ(server.post_json("/tins/t/edits", R"({"ops":[)" + repeated(op, 5) + "]}").status, 200);
+  const std::string before = server.state();
+  const RawAnswer answer =
+      server.post_json("/tins/t/edits", R"({"ops":[)" + repeated(R"({"op":"set-z","id":1,"z":8})", 6) + "]}");
+  expect_too_large(answer);
+  EXPECT_EQ(Json::parse(answer.body).at("where"), "/ops");
+  EXPECT_EQ(server.state(), before);
+}
+
+TEST(LimitsTest, PositionsInARequest) {
+  TestServer server([](server::Config& config) { config.limits.positions_per_request = 5; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(4) + "}").status, 201);
+  const auto ask = [&](int count) {
+    return server.post_json("/tins/t/elevation", R"({"positions":[)" + repeated("[1,2]", count) + "]}");
+  };
+  const RawAnswer answer = ask(5);
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(Json::parse(answer.body).at("z").size(), 5U);
+  expect_too_large(ask(6));
+}
+
+TEST(LimitsTest, VerticesOfATinMadeFromJson) {
+  TestServer server([](server::Config& config) { config.limits.vertices_per_tin = 12; });
+  EXPECT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(12) + "}").status, 201);
+  const std::string before = server.state();
+  expect_too_large(server.post_json("/tins", R"({"vertices":)" + vertices(13) + "}"));
+  EXPECT_EQ(server.state(), before);
+}
+
+TEST(LimitsTest, VerticesOfATinThatIsEdited) {
+  TestServer server([](server::Config& config) { config.limits.vertices_per_tin = 12; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(10) + "}").status, 201);
+  EXPECT_EQ(server.post_json("/tins/t/edits", inserts(2, 10)).status, 200);
+  const std::string before = server.state();
+  expect_too_large(server.post_json("/tins/t/edits", inserts(1, 12)));
+  EXPECT_EQ(server.state(), before);
+}
+
+/// The limit is one of the TIN, not of the operations.
+TEST(LimitsTest, AFullTinMayExchangeAndReplaceVertices) {
+  TestServer server([](server::Config& config) { config.limits.vertices_per_tin = 12; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(12) + "}").status, 201);
+  EXPECT_EQ(server.post_json("/tins/t/edits", R"({"ops":[{"op":"insert","x":0,"y":0,"z":9}]})").status, 200);
+  EXPECT_EQ(
+      server
+          .post_json("/tins/t/edits", R"({"ops":[{"op":"remove","id":1},{"op":"insert","x":1,"y":0,"z":9}]})")
+          .status,
+      200);
+  EXPECT_EQ(server.tin("t").at("vertexCount"), 12);
+}
+
+TEST(LimitsTest, ValidSamplesOfAFile) {
+  TestServer server([](server::Config& config) { config.limits.vertices_per_tin = 12; });
+  EXPECT_EQ(server.upload("/tins?id=grid", "text/plain", ascii_grid(4, 3)).status, 201);
+  EXPECT_EQ(server
+                .upload("/tins?id=void", "text/plain",
+                        ascii_grid({{1, 2, 3, 4, 5}, {1, -9999, 3, 4, 5}, {6, 7, -9999, -9999, 8}}))
+                .status,
+            201);
+  std::string points = "x,y,z\n";
+  for (int i = 0; i < 12; ++i) points += std::to_string(i) + "," + std::to_string(i * i) + ",1\n";
+  EXPECT_EQ(server.upload("/tins?id=points", "text/csv", points).status, 201);
+  const std::string before = server.state();
+  expect_too_large(server.upload("/tins", "text/plain", ascii_grid(13, 1)));
+  expect_too_large(server.upload("/tins", "text/csv", points + "12,144,1\n"));
+  EXPECT_EQ(server.state(), before);
+  EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+}
+
+TEST(LimitsTest, Tins) {
+  TestServer server([](server::Config& config) { config.limits.tins = 3; });
+  for (const std::string id : {"a", "b", "c"}) {
+    EXPECT_EQ(server.post_json("/tins", R"({"id":")" + id + R"(","vertices":)" + vertices(4) + "}").status,
+              201);
+  }
+  const std::string before = server.state();
+  EXPECT_EQ(slug(server.post_json("/tins", "{}")), "too-many-requests");
+  EXPECT_EQ(server.upload("/tins", "text/plain", ascii_grid(3, 3)).status, 429);
+  EXPECT_EQ(
+      server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"a","tolerance":1,"as":"d"}})")
+          .status,
+      429);
+  EXPECT_EQ(server.state(), before);
+  EXPECT_EQ(server.remove("/tins/b").status, 204);
+  EXPECT_EQ(server.post_json("/tins", "{}").status, 201);
+}
+
+TEST(LimitsTest, PageSize) {
+  TestServer server([](server::Config& config) {
+    config.limits.page_size = 3;
+    config.limits.page_size_max = 7;
+  });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(20) + "}").status, 201);
+  const auto returned = [&](const std::string& query) {
+    return Json::parse(server.get("/tins/t/collections/vertices/items" + query).body).at("features").size();
+  };
+  EXPECT_EQ(returned(""), 3U);
+  EXPECT_EQ(returned("?limit=7"), 7U);
+  EXPECT_EQ(returned("?limit=8"), 7U);
+  EXPECT_EQ(returned("?limit=4000000000"), 7U);
+}
+
+TEST(LimitsTest, BytesOfABodyInMemory) {
+  TestServer server([](server::Config& config) { config.limits.body_bytes_memory = 400; });
+  const auto padded = [](std::string text, std::size_t size) { return text.append(size - text.size(), ' '); };
+  EXPECT_EQ(server.post_json("/tins", padded(R"({"id":"t"})", 400)).status, 201);
+  const std::string before = server.state();
+  expect_too_large(server.post_json("/tins", padded(R"({"id":"u"})", 401)));
+  const std::string op = R"({"ops":[{"op":"insert","x":1,"y":1,"z":1}]})";
+  expect_too_large(server.post_json("/tins/t/edits", padded(op, 401)));
+  EXPECT_EQ(server.state(), before);
+  EXPECT_EQ(server.post_json("/tins/t/edits", padded(op, 400)).status, 200);
+}
+
+TEST(LimitsTest, BytesOfAnUploadWithAndWithoutALength) {
+  const std::string grid = ascii_grid(6, 6);
+  TestServer server(
+      [&](server::Config& config) { config.limits.upload_bytes = static_cast<std::int64_t>(grid.size()); });
+  EXPECT_EQ(server.upload("/tins?id=t", "text/plain", grid).status, 201);
+  const std::string before = server.state();
+  expect_too_large(server.upload("/tins?id=u", "text/plain", grid + "\n"));
+  const std::string head =
+      "POST /tins?id=u HTTP/1.1\r\nHost: t\r\nConnection: close\r\nTransfer-Encoding: chunked\r\n\r\n";
+  const auto chunked = [&](const std::string& body) {
+    char size[20];
+    std::snprintf(size, sizeof size, "%zx\r\n", body.size());
+    return support::RawClient(server.port()).ask(head + size + body + "\r\n0\r\n\r\n");
+  };
+  EXPECT_EQ(chunked(grid + "\n").status, 413);
+  EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+  EXPECT_EQ(server.state(), before);
+  EXPECT_EQ(chunked(grid).status, 201);
+}
+
+TEST(LimitsTest, PixelsOfARaster) {
+  TestServer server([](server::Config& config) { config.limits.raster_pixels = 35; });
+  EXPECT_EQ(server.upload("/tins?id=t", "text/plain", ascii_grid(7, 5)).status, 201);
+  const std::string before = server.state();
+  expect_too_large(server.upload("/tins", "text/plain", ascii_grid(36, 1)));
+  // A header that promises more than any memory holds is refused for its size, too.
+  expect_too_large(server.upload(
+      "/tins", "text/plain", "ncols 100000\nnrows 100000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"));
+  EXPECT_EQ(server.state(), before);
+  EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+}
+
+TEST(LimitsTest, PixelsOfAnExport) {
+  TestServer server([](server::Config& config) { config.limits.export_pixels = 1000; });
+  ASSERT_EQ(server.upload("/tins?id=t", "text/plain", ascii_grid(7, 5)).status, 201);
+  const std::string path = "/tins/t/export?f=geotiff&cell-size=1&bbox=0,0,";
+  EXPECT_EQ(server.get(path + "25,40").status, 200);
+  expect_too_large(server.get(path + "77,13"));
+  expect_too_large(server.get("/tins/t/export?f=geotiff&cell-size=1e-300"));
+  expect_too_large(server.get("/tins/t/export?f=geotiff&cell-size=1&bbox=-1e300,-1e300,1e300,1e300"));
+  EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+}
+
+TEST(LimitsTest, PixelsOfTheSourcesOwnGrid) {
+  TestServer server([](server::Config& config) { config.limits.export_pixels = 35; });
+  ASSERT_EQ(server.upload("/tins?id=fits", "text/plain", ascii_grid(7, 5)).status, 201);
+  ASSERT_EQ(server.upload("/tins?id=more", "text/plain", ascii_grid(9, 4)).status, 201);
+  EXPECT_EQ(server.get("/tins/fits/export").status, 200);
+  expect_too_large(server.get("/tins/more/export"));
+  EXPECT_EQ(server.get("/tins/more/export?bbox=0,0,5,4").status, 200);
+}
+
+TEST(LimitsTest, JobsThatWait) {
+  TestServer server([](server::Config& config) { config.jobs.queued = 2; });
+  const auto busy = server.occupy_worker();
+  const auto submit = [&](const std::string& id) {
+    return server.upload("/tins?id=" + id, "text/plain", ascii_grid(3, 3), "Prefer: respond-async\r\n");
+  };
+  EXPECT_EQ(submit("a").status, 201);
+  EXPECT_EQ(submit("b").status, 201);
+  const RawAnswer third = submit("c");
+  EXPECT_EQ(third.status, 429);
+  EXPECT_NE(third.header("retry-after"), "");
+}
+
+TEST(LimitsTest, JobsThatAreRemembered) {
+  TestServer server([](server::Config& config) { config.jobs.kept = 2; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(4) + "}").status, 201);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(
+        server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","maxVertices":4}})").status,
+        200);
+  }
+  EXPECT_EQ(Json::parse(server.get("/jobs").body).at("jobs").size(), 2U);
+}
+
+}  // namespace
+}  // namespace tests::contract

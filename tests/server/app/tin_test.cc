@@ -1,0 +1,237 @@
+#include "server/app/tin.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <thread>
+
+#include "server/app/catalogue.h"
+#include "server/store/store.h"
+#include "tin/mesh/validate.h"
+#include "tin/query/elevation.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+using server::app::Catalogue;
+using server::app::InsertAt;
+using server::app::MoveTo;
+using server::app::Tin;
+using server::app::Version;
+using server::app::VertexId;
+using server::app::WorldEdit;
+using tin::base::Code;
+using tin::base::Result;
+using tin::terrain::Duplicates;
+using tin::terrain::Remove;
+using tin::terrain::SetZ;
+using tin::terrain::Terrain;
+
+/// A store in memory that can be told to fail.
+class FailingStore : public server::store::Store {
+ public:
+  bool fail = false;
+  std::size_t appended = 0;
+
+  Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view) override {
+    return status();
+  }
+  Result<void> update_title(std::string_view, std::string_view) override { return status(); }
+  Result<void> remove_tin(std::string_view) override { return status(); }
+  Result<void> append(std::string_view, std::uint64_t, std::string_view,
+                      const server::store::RevisionInfo&) override {
+    if (!fail) ++appended;
+    return status();
+  }
+  Result<void> put_checkpoint(std::string_view, std::uint64_t, std::string_view) override { return status(); }
+  Result<std::vector<server::store::TinRecord>> list() override {
+    return std::vector<server::store::TinRecord>{};
+  }
+  Result<server::store::Loaded> load(std::string_view) override {
+    return tin::base::error(Code::kNotFound, "");
+  }
+
+ private:
+  Result<void> status() const {
+    if (fail) return tin::base::error(Code::kStorage, "the disk is full");
+    return {};
+  }
+};
+
+Terrain grid_terrain(int side) {
+  std::vector<tin::terrain::Placement> placements;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) placements.push_back({{x * 1000, y * 1000}, double(x + y)});
+  }
+  return *Terrain::build({}, placements, Duplicates::kReject);
+}
+
+class TinTest : public testing::Test {
+ protected:
+  FailingStore store_;
+  Tin tin_{{{"t", "T", 5}, grid_terrain(20), Duplicates::kReject, std::nullopt, 1}, store_, 500};
+  const server::store::RevisionInfo info_{};
+
+  std::string digest() const {
+    return tin_.read([](const Terrain& t, std::uint64_t) { return t.digest(); });
+  }
+  std::string broken() const {
+    return tin_.read(
+        [](const Terrain& t, std::uint64_t) { return tin::mesh::validate(t.mesh()).value_or(""); });
+  }
+};
+
+TEST_F(TinTest, EditsAdvanceTheRevisionAndAreJournaled) {
+  const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, SetZ{VertexId(1), 4}};
+  const auto edited = tin_.edit(edits, std::nullopt, info_);
+  ASSERT_TRUE(edited.ok());
+  EXPECT_EQ(edited->revision, 2U);
+  EXPECT_EQ(edited->ids, (std::vector<VertexId>{VertexId(401), VertexId(1)}));
+  EXPECT_EQ(store_.appended, 1U);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, AnEditThatCannotBeStoredIsNeverSeen) {
+  const std::string before = digest();
+  store_.fail = true;
+  const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, Remove{VertexId(7)},
+                                     MoveTo{VertexId(9), 3.3, 3.3}};
+  const auto edited = tin_.edit(edits, std::nullopt, info_);
+  ASSERT_FALSE(edited.ok());
+  EXPECT_EQ(edited.error().code, Code::kStorage);
+  EXPECT_EQ(digest(), before);
+  EXPECT_EQ(tin_.summary().revision, 1U);
+  EXPECT_EQ(broken(), "");
+  store_.fail = false;
+  ASSERT_TRUE(tin_.edit(edits, std::nullopt, info_).ok());
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, AnExpectedRevisionThatIsGoneIsRefused) {
+  const std::vector<WorldEdit> edit{SetZ{VertexId(1), 4}};
+  ASSERT_TRUE(tin_.edit(edit, 1, info_).ok());
+  const auto late = tin_.edit(edit, 1, info_);
+  ASSERT_FALSE(late.ok());
+  EXPECT_EQ(late.error().code, Code::kPrecondition);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, OneVertexPastTheLimitIsRefused) {
+  std::vector<WorldEdit> edits;
+  for (int i = 0; i < 100; ++i) edits.push_back(InsertAt{0.001 * (i + 1), 0.5, 1});
+  ASSERT_TRUE(tin_.edit(edits, std::nullopt, info_).ok()) << "500 are allowed";
+  const auto more = tin_.edit(std::vector<WorldEdit>{InsertAt{0.7, 0.7, 1}}, std::nullopt, info_);
+  ASSERT_FALSE(more.ok());
+  EXPECT_EQ(more.error().code, Code::kTooLarge);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, AVersionStaysWhatItWasWhileEditsGoOn) {
+  const Version version = tin_.version();
+  const std::string before = version.terrain->digest();
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{InsertAt{0.5 + i, 0.5, 1}}, std::nullopt, info_).ok());
+  }
+  EXPECT_EQ(version.terrain->digest(), before);
+  EXPECT_EQ(version.revision, 1U);
+  EXPECT_EQ(tin::mesh::validate(version.terrain->mesh()), std::nullopt);
+  EXPECT_NE(digest(), before);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, PagesGoOnFromAKeptRevisionOnly) {
+  tin_.keep_for_pages(tin_.version());
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 4}}, std::nullopt, info_).ok());
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 5}}, std::nullopt, info_).ok());
+  EXPECT_EQ(tin_.page_version(1)->revision, 1U);
+  EXPECT_EQ(tin_.page_version(3)->revision, 3U);
+  ASSERT_FALSE(tin_.page_version(2).ok());
+  EXPECT_EQ(tin_.page_version(2).error().code, Code::kGone);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, RemovalsOfAJobLeaveWhatWasEditedMeanwhile) {
+  const Version seen = tin_.version();
+  ASSERT_TRUE(
+      tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, std::nullopt, info_)
+          .ok());
+  std::vector<VertexId> ids;
+  for (std::uint64_t id = 22; id < 340; ++id) ids.emplace_back(id);
+  const auto landed = tin_.remove_vertices(seen, ids, info_);
+  ASSERT_TRUE(landed.ok());
+  EXPECT_EQ(landed->ids.size(), ids.size() - 2);
+  EXPECT_TRUE(tin_.read([](const Terrain& t, std::uint64_t) { return t.vertex(VertexId(22)).has_value(); }));
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, RemovalsBuiltAsideEqualRemovalsInPlace) {
+  FailingStore other_store;
+  Tin in_place({{"u", "U", 5}, grid_terrain(20), Duplicates::kReject, std::nullopt, 1}, other_store, 500);
+  std::vector<VertexId> many;
+  std::vector<WorldEdit> edits;
+  for (std::uint64_t id = 50; id < 300; ++id) {
+    many.emplace_back(id);
+    edits.push_back(Remove{VertexId(id)});
+  }
+  ASSERT_TRUE(tin_.remove_vertices(tin_.version(), many, info_).ok());
+  ASSERT_TRUE(in_place.edit(edits, std::nullopt, info_).ok());
+  EXPECT_EQ(digest(), in_place.read([](const Terrain& t, std::uint64_t) { return t.digest(); }));
+  EXPECT_EQ(tin_.summary().triangle_count, in_place.summary().triangle_count);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST(OpenFrameTest, IsFittedToTheFirstVerticesAndFixedThen) {
+  FailingStore store;
+  Tin tin({{"t", "T", 5}, Terrain{tin::frame::Frame{}}, Duplicates::kReject, std::array<double, 2>{0, 0}, 1},
+          store, 500);
+  const std::vector<WorldEdit> far{InsertAt{5e6, 7e6, 1}, InsertAt{5e6 + 10, 7e6, 2},
+                                   InsertAt{5e6, 7e6 + 10, 3}};
+  ASSERT_TRUE(tin.edit(far, std::nullopt, {}).ok());
+  EXPECT_EQ(tin.summary().triangle_count, 1U);
+  const auto near = tin.edit(std::vector<WorldEdit>{InsertAt{0, 0, 1}}, std::nullopt, {});
+  ASSERT_FALSE(near.ok());
+  EXPECT_EQ(near.error().code, Code::kOutsideLattice);
+  EXPECT_EQ(near.error().where, "/0");
+}
+
+TEST(ConcurrencyTest, ReadersAnEditorAndALongReaderTogether) {
+  FailingStore store;
+  Tin tin({{"t", "T", 5}, grid_terrain(30), Duplicates::kReplace, std::nullopt, 1}, store, 5000);
+  std::atomic<bool> stop{false};
+  std::vector<std::thread> threads;
+  for (int reader = 0; reader < 2; ++reader) {
+    threads.emplace_back([&] {
+      std::uint64_t last = 0;
+      while (!stop) {
+        tin.read([&](const Terrain& terrain, std::uint64_t revision) {
+          EXPECT_GE(revision, last);
+          last = revision;
+          tin::query::ElevationQuery query(terrain, tin::query::Voids::kKeep);
+          EXPECT_TRUE(query.at({1500, 1500}).has_value());
+        });
+        tin.summary();
+      }
+    });
+  }
+  threads.emplace_back([&] {
+    while (!stop) {
+      const Version version = tin.version();
+      const std::string digest = version.terrain->digest();
+      EXPECT_EQ(tin::mesh::validate(version.terrain->mesh()), std::nullopt);
+      EXPECT_EQ(version.terrain->digest(), digest);
+      tin.keep_for_pages(version);
+    }
+  });
+  for (int i = 0; i < 300; ++i) {
+    const double x = 0.001 * (i % 97) + 0.3;
+    ASSERT_TRUE(tin.edit(std::vector<WorldEdit>{InsertAt{x, 0.77, double(i)}, SetZ{VertexId(3), double(i)}},
+                         std::nullopt, {})
+                    .ok());
+  }
+  stop = true;
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(tin.summary().revision, 301U);
+}
+
+}  // namespace
