@@ -18,7 +18,7 @@ void Triangulation::remove(VertexSlot v) {
     mesh_.release_vertex(v);
     return;
   }
-  if (!ears_.remove(mesh_, v, fresh_)) drop_to_line(v);
+  if (!remover_.remove(mesh_, v, fresh_)) drop_to_line(v);
 }
 
 /// All vertices but `gone` are collinear: they become a line again.

@@ -14,7 +14,7 @@
 #include "tin/delaunay/start_grid.h"
 #include "tin/exact/point.h"
 #include "tin/mesh/mesh.h"
-#include "tin/removal/ear_queue.h"
+#include "tin/removal/remover.h"
 
 namespace tin::delaunay {
 
@@ -47,7 +47,7 @@ class Triangulation {
   /// The same, starting the walk at an alive vertex that is likely near.
   Inserted insert_near(exact::Point p, mesh::VertexSlot hint);
 
-  /// Removes `v` by the ear queue. Requires: v alive. Cost: O(k log k) for degree k.
+  /// Removes `v`. Requires: v alive. Cost: expected O(k) for degree k.
   void remove(mesh::VertexSlot v);
 
   /// Inserts many points, in Hilbert order; slots[i] is the vertex of points[i] (equal for equal points).
@@ -75,7 +75,7 @@ class Triangulation {
 
   mesh::Mesh mesh_;
   StartGrid starts_;
-  removal::EarQueue ears_;
+  removal::Remover remover_;
   std::vector<mesh::TriangleSlot> fresh_;
   std::vector<mesh::TriangleSlot> cavity_;     // triangles in conflict with the new point
   std::vector<mesh::HalfEdge> cavity_edge_;    // around them, counter-clockwise, seen from outside

@@ -1,6 +1,8 @@
 #include "tin/exact/power.h"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "tin/base/check.h"
 
@@ -16,56 +18,59 @@ Limbs multiply(Uint128 a, std::uint64_t b) {
   return {static_cast<std::uint64_t>(high >> 64), static_cast<std::uint64_t>(high), static_cast<std::uint64_t>(low)};
 }
 
-int sign(Int128 value) { return (value > 0) - (value < 0); }
+using XY = std::pair<std::int64_t, std::int64_t>;
 
-/// Barycentric coefficient of p at the corner `q` of the ear, times the ear's orientation; 0 if q is no corner.
-std::int64_t coefficient(const EarPower& ear, Point q, Point p) {
-  const auto& [a, b, c] = ear.corners;
-  if (q == a) return orientation(p, b, c);
-  if (q == b) return orientation(a, p, c);
-  if (q == c) return orientation(a, b, p);
+/// Two roundings at most: of each half, and of the sum. (The compiler's own conversion is a function call.)
+double to_double(Uint128 value) {
+  return static_cast<double>(static_cast<std::uint64_t>(value >> 64)) * 0x1p64 +
+         static_cast<double>(static_cast<std::uint64_t>(value));
+}
+
+XY place(const Lifted& q) { return {q.x, q.y}; }
+
+/// Barycentric coefficient of the origin at the corner `q` of the ear, times the ear's orientation; 0 if q is no corner.
+std::int64_t coefficient(const Corners& ear, const XY& q) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Lifted &next = ear[(i + 1) % 3], &last = ear[(i + 2) % 3];
+    if (place(ear[i]) == q) return next.x * last.y - next.y * last.x;
+  }
   return 0;
 }
 
 }  // namespace
 
-EarPower ear_power(Point q0, Point q1, Point q2, Point p) {
-  EarPower ear{{q0, q1, q2}, in_circle_determinant(q0, q1, q2, p), orientation(q0, q1, q2), 0};
-  TIN_DCHECK(ear.orientation > 0 && ear.in_circle >= 0);
-  ear.approximate = static_cast<double>(ear.in_circle) / static_cast<double>(ear.orientation);
-  return ear;
+Power make_power(Int128 in_circle, std::int64_t orientation) {
+  TIN_DCHECK(orientation > 0 && in_circle >= 0);
+  return {in_circle, orientation, to_double(static_cast<Uint128>(in_circle)) / static_cast<double>(orientation)};
 }
 
-namespace internal {
+Power power(const Corners& ear) {
+  return make_power(in_circle_determinant(ear[0], ear[1], ear[2]), orientation(ear[0], ear[1], ear[2]));
+}
 
-int compare_exact(const EarPower& a, const EarPower& b) {
+PowerMinors power_minors(const Lifted& a, const Lifted& b) {
+  return {Int128{a.y} * b.z - Int128{a.z} * b.y, Int128{a.z} * b.x - Int128{a.x} * b.z, a.x * b.y - a.y * b.x};
+}
+
+Int128 in_circle_determinant(const PowerMinors& minors, const Lifted& c) {
+  return minors.x * c.x + minors.y * c.y + Int128{minors.z} * c.z;
+}
+
+int compare_exact(const Power& a, const Power& b) {
   const Limbs left = multiply(static_cast<Uint128>(a.in_circle), static_cast<std::uint64_t>(b.orientation));
   const Limbs right = multiply(static_cast<Uint128>(b.in_circle), static_cast<std::uint64_t>(a.orientation));
   return (left > right) - (left < right);
 }
 
-int compare_perturbed(const EarPower& a, const EarPower& b, Point p) {
-  std::array<Point, 6> corners{a.corners[0], a.corners[1], a.corners[2], b.corners[0], b.corners[1], b.corners[2]};
-  std::sort(corners.begin(), corners.end(), [](Point l, Point r) { return r < l; });
-  for (const Point q : corners) {
-    const Int128 left = static_cast<Int128>(coefficient(a, q, p)) * b.orientation;
-    const Int128 right = static_cast<Int128>(coefficient(b, q, p)) * a.orientation;
-    if (left != right) return sign(left - right);
+int compare_perturbed(const Corners& a, std::int64_t orientation_a, const Corners& b, std::int64_t orientation_b) {
+  std::array<XY, 6> descending{place(a[0]), place(a[1]), place(a[2]), place(b[0]), place(b[1]), place(b[2])};
+  std::sort(descending.begin(), descending.end(), std::greater<>());
+  for (const XY& q : descending) {
+    const Int128 left = static_cast<Int128>(coefficient(a, q)) * orientation_b;
+    const Int128 right = static_cast<Int128>(coefficient(b, q)) * orientation_a;
+    if (left != right) return left > right ? 1 : -1;
   }
   return 0;
-}
-
-}  // namespace internal
-
-bool comes_before(const EarPower& a, const EarPower& b, Point p) {
-  // Three roundings of relative size 2^-53 stand behind each quotient: a gap of 2^-49 of the sum is certain.
-  const double gap = a.approximate - b.approximate;
-  const double doubt = (a.approximate + b.approximate) * 0x1p-49;
-  if (gap < -doubt) return true;
-  if (gap > doubt) return false;
-  const int exact = internal::compare_exact(a, b);
-  if (exact != 0) return exact < 0;
-  return internal::compare_perturbed(a, b, p) < 0;
 }
 
 }  // namespace tin::exact

@@ -100,6 +100,14 @@ class Mesh {
   void clear_triangles();
   void reserve(std::size_t vertices);
 
+  // Memory -------------------------------------------------------------------------------------------------------
+
+  void prefetch(VertexSlot v) const {
+    __builtin_prefetch(&points_[v.value()]);
+    __builtin_prefetch(&star_[v.value()]);
+  }
+  void prefetch(TriangleSlot t) const { __builtin_prefetch(&triangles_[t.value()]); }
+
  private:
   static constexpr std::uint32_t kDead = kNone;
   static constexpr std::uint32_t kNoTriangle = kNone - 1;

@@ -1,147 +1,168 @@
 #include "tin/removal/ear_queue.h"
 
-#include <algorithm>
-
-#include "tin/exact/predicates.h"
+#include "tin/base/check.h"
 
 namespace tin::removal {
 
-using exact::orientation;
-using mesh::HalfEdge;
-using mesh::kInfinite;
-using mesh::Mesh;
-using mesh::TriangleSlot;
-using mesh::VertexSlot;
+using exact::Corners;
 
-std::span<const Ear> EarQueue::fill(const Mesh& mesh, VertexSlot v) {
-  make_ring(mesh, v);
-  if (leaves_a_line(mesh)) return {};
-  use_heap_ = ring_.size() > kLinearLimit;
-  if (left_ > 3) {
-    for (std::uint32_t i = 0; i < ring_.size(); ++i) renew_ear(i);
+template <class Tally>
+void EarQueue::run(const Star& star, std::uint32_t stop, Tally& tally) {
+  begin(star);
+  if (left_ > stop) shell(star, stop, tally);
+  if (left_ > stop) {
+    // No left turn on the finite chain: each of its edges lies on the new hull.
+    TIN_CHECK(star.is_on_hull());
+    while (left_ > 3) cut(ring_[star.infinite()].next);
   }
-  while (left_ > 3) {
-    const std::uint32_t node = take_smallest();
-    if (node == kNoEar) break;
-    const std::uint32_t previous = ring_[node].previous, next = ring_[node].next;
-    cut(node);
-    renew_ear(previous);
-    renew_ear(next);
+  if (left_ == 3) {
+    cut(ring_[some_node_].next);
+    return;
   }
-  if (left_ > 3) close_hull();
-  cut(ring_[some_node_].next);
-  return ears_;
+  for (std::uint32_t i = 0, node = some_node_; i < left_; ++i, node = ring_[node].next) remains_.push_back(node);
 }
 
-void EarQueue::make_ring(const Mesh& mesh, VertexSlot v) {
-  mesh.link(v, link_);
-  removed_ = mesh.point(v);
-  const auto k = static_cast<std::uint32_t>(link_.size());
-  ring_.resize(k);
-  candidates_.clear();
+void EarQueue::begin(const Star& star) {
+  const std::uint32_t k = star.degree();
+  if (ring_.size() < k) {
+    ring_.resize(k);
+    candidates_.resize(k);
+    if (renewal_ == Renewal::kUpdate) minors_.resize(k);
+  }
   heap_.clear();
   ears_.clear();
-  infinite_ = kNoEar;
-  some_node_ = 0;
+  remains_.clear();
+  for (std::uint32_t i = 0; i < k; ++i) ring_[i] = {i == 0 ? k - 1 : i - 1, i + 1 == k ? 0 : i + 1, kNowhere};
+  use_heap_ = k > kScanLimit;
   left_ = k;
-  for (std::uint32_t i = 0; i < k; ++i) {
-    const VertexSlot q = mesh.origin(link_[i]);
-    ring_[i] = {q, mesh.point(q), i == 0 ? k - 1 : i - 1, i + 1 == k ? 0 : i + 1, kNoEar};
-    if (q == kInfinite) infinite_ = i;
-  }
+  some_node_ = 0;
 }
 
-/// Makes the present ear at `node`, if its corners are finite and turn left.
-void EarQueue::renew_ear(std::uint32_t node) {
-  Node& middle = ring_[node];
-  middle.ear = kNoEar;
-  if (node == infinite_ || middle.previous == infinite_ || middle.next == infinite_) return;
-  const exact::Point a = ring_[middle.previous].point, b = middle.point, c = ring_[middle.next].point;
-  if (orientation(a, b, c) <= 0) return;
-  middle.ear = static_cast<std::uint32_t>(candidates_.size());
-  candidates_.push_back({exact::ear_power(a, b, c, removed_), node});
-  if (!use_heap_) return;
-  heap_.push_back(middle.ear);
-  std::push_heap(heap_.begin(), heap_.end(), [this](std::uint32_t l, std::uint32_t r) {
-    return exact::comes_before(candidates_[r].power, candidates_[l].power, removed_);
-  });
-}
-
-std::uint32_t EarQueue::take_smallest() { return use_heap_ ? take_from_heap() : take_by_scan(); }
-
-std::uint32_t EarQueue::take_by_scan() {
-  std::uint32_t best = kNoEar;
-  std::uint32_t node = some_node_;
-  do {
-    const std::uint32_t ear = ring_[node].ear;
-    if (ear != kNoEar && (best == kNoEar || exact::comes_before(candidates_[ear].power, candidates_[best].power, removed_))) {
-      best = ear;
-    }
-    node = ring_[node].next;
-  } while (node != some_node_);
-  return best == kNoEar ? kNoEar : candidates_[best].node;
-}
-
-std::uint32_t EarQueue::take_from_heap() {
+template <class Tally>
+void EarQueue::shell(const Star& star, std::uint32_t stop, Tally& tally) {
+  for (std::uint32_t i = 0; i < left_; ++i) renew(star, i, false, tally);
   while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end(), [this](std::uint32_t l, std::uint32_t r) {
-      return exact::comes_before(candidates_[r].power, candidates_[l].power, removed_);
-    });
-    const std::uint32_t ear = heap_.back();
-    heap_.pop_back();
-    const std::uint32_t node = candidates_[ear].node;
-    if (ring_[node].ear == ear) return node;  // otherwise it was cut or renewed since
+    const std::uint32_t node = smallest(star, tally);
+    const std::uint32_t previous = ring_[node].previous, next = ring_[node].next;
+    drop(star, node, tally);
+    cut(node);
+    if (left_ == stop) return;
+    renew(star, previous, true, tally);
+    renew(star, next, false, tally);
   }
-  return kNoEar;
+}
+
+/// Makes the present ear at `node`, if its corners are finite and turn left. `same_start`: only its third corner changed.
+template <class Tally>
+void EarQueue::renew(const Star& star, std::uint32_t node, bool same_start, Tally& tally) {
+  const auto [previous, next, in_heap] = ring_[node];
+  const std::uint32_t infinite = star.infinite();
+  const bool finite = node != infinite && previous != infinite && next != infinite;
+  const std::int64_t turn = finite ? exact::orientation(star.at(previous), star.at(node), star.at(next)) : 0;
+  if (turn <= 0) {
+    drop(star, node, tally);
+    return;
+  }
+  Candidate& ear = candidates_[node];
+  const exact::Lifted &a = star.at(previous), &b = star.at(node), &c = star.at(next);
+  if (renewal_ == Renewal::kCompute) {
+    tally.power_computation();
+    ear.power = exact::make_power(exact::in_circle_determinant(a, b, c), turn);
+  } else {
+    const bool update = same_start && in_heap != kNowhere;  // else there are no minors to start from
+    if (update) tally.power_update(); else tally.power_computation();
+    if (!update) minors_[node] = exact::power_minors(a, b);
+    ear.power = exact::make_power(exact::in_circle_determinant(minors_[node], c), turn);
+  }
+  ear.previous = previous;
+  ear.next = next;
+  place(star, {ear.power.approximate, node}, tally);
+}
+
+/// The shelling order: smaller |power|; if equal, smaller perturbed |power|.
+template <class Tally>
+bool EarQueue::comes_before(const Star& star, const Entry& a, const Entry& b, Tally& tally) const {
+  tally.comparison();
+  if (const int sign = exact::compare_filtered(a.approximate, b.approximate); sign != 0) return sign < 0;
+  tally.filter_failure();
+  const Candidate &l = candidates_[a.node], &r = candidates_[b.node];
+  tally.exact_evaluation();
+  if (const int sign = exact::compare_exact(l.power, r.power); sign != 0) return sign < 0;
+  tally.power_tie();
+  const Corners left{star.at(l.previous), star.at(a.node), star.at(l.next)};
+  const Corners right{star.at(r.previous), star.at(b.node), star.at(r.next)};
+  return exact::compare_perturbed(left, l.power.orientation, right, r.power.orientation) < 0;
+}
+
+template <class Tally>
+std::uint32_t EarQueue::smallest(const Star& star, Tally& tally) const {
+  std::size_t best = 0;
+  for (std::size_t i = 1; !use_heap_ && i < heap_.size(); ++i) {
+    if (comes_before(star, heap_[i], heap_[best], tally)) best = i;
+  }
+  return heap_[best].node;
+}
+
+void EarQueue::put(std::size_t i, const Entry& entry) {
+  heap_[i] = entry;
+  ring_[entry.node].in_heap = static_cast<std::uint32_t>(i);
+}
+
+/// Puts a new or changed entry where it belongs.
+template <class Tally>
+void EarQueue::place(const Star& star, const Entry& entry, Tally& tally) {
+  std::size_t i = ring_[entry.node].in_heap;
+  if (i == kNowhere) {
+    i = heap_.size();
+    heap_.push_back(entry);
+  }
+  sift(star, i, entry, tally);
+}
+
+template <class Tally>
+void EarQueue::drop(const Star& star, std::uint32_t node, Tally& tally) {
+  const std::uint32_t i = ring_[node].in_heap;
+  if (i == kNowhere) return;
+  ring_[node].in_heap = kNowhere;
+  const Entry last = heap_.back();
+  heap_.pop_back();
+  if (last.node != node) sift(star, i, last, tally);
+}
+
+/// Moves the hole to where `entry` belongs: up, or else down along the smaller children to a leaf and from there up again,
+/// which asks about half as often as comparing with `entry` on the way down.
+template <class Tally>
+void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tally& tally) {
+  if (!use_heap_) return put(hole, entry);
+  const std::size_t start = climb(star, hole, 0, entry, tally);
+  if (start != hole) return put(start, entry);
+  for (std::size_t child; (child = 2 * hole + 1) < heap_.size(); hole = child) {
+    if (child + 1 < heap_.size() && comes_before(star, heap_[child + 1], heap_[child], tally)) ++child;
+    put(hole, heap_[child]);
+  }
+  put(climb(star, hole, start, entry, tally), entry);
+}
+
+/// Moves the hole up, not above `top`, while its parent comes after `entry`.
+template <class Tally>
+std::size_t EarQueue::climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally) {
+  while (hole > top && comes_before(star, entry, heap_[(hole - 1) / 2], tally)) {
+    put(hole, heap_[(hole - 1) / 2]);
+    hole = (hole - 1) / 2;
+  }
+  return hole;
 }
 
 void EarQueue::cut(std::uint32_t node) {
-  Node& middle = ring_[node];
-  ears_.push_back({middle.previous, node, middle.next});
-  ring_[middle.previous].next = middle.next;
-  ring_[middle.next].previous = middle.previous;
-  middle.ear = kNoEar;
-  some_node_ = middle.previous;
+  const auto [previous, next, in_heap] = ring_[node];
+  ears_.push_back({previous, node, next});
+  ring_[previous].next = next;
+  ring_[next].previous = previous;
+  some_node_ = previous;
   --left_;
 }
 
-/// No left turn is left on the finite chain: each of its edges lies on the new hull.
-void EarQueue::close_hull() {
-  TIN_CHECK(infinite_ != kNoEar);
-  while (left_ > 3) cut(ring_[infinite_].next);
-}
-
-bool EarQueue::leaves_a_line(const Mesh& mesh) const {
-  if (infinite_ == kNoEar || ring_.size() != mesh.vertex_count()) return false;
-  std::uint32_t i = ring_[infinite_].next;
-  const exact::Point first = ring_[i].point;
-  const exact::Point second = ring_[ring_[i].next].point;
-  while (i != infinite_) {
-    if (orientation(first, second, ring_[i].point) != 0) return false;
-    i = ring_[i].next;
-  }
-  return true;
-}
-
-bool EarQueue::remove(Mesh& mesh, VertexSlot v, std::vector<TriangleSlot>& fresh) {
-  fresh.clear();
-  if (fill(mesh, v).empty()) return false;
-  outside_.resize(link_.size());
-  for (std::size_t i = 0; i < link_.size(); ++i) outside_[i] = mesh.twin(link_[i]);
-  for (std::size_t i = 0; i < ears_.size(); ++i) {
-    const auto [previous, middle, next] = ears_[i];
-    const TriangleSlot t = link_[i].triangle();  // k - 2 of the star's k slots are used again
-    mesh.set_triangle(t, ring_[previous].vertex, ring_[middle].vertex, ring_[next].vertex);
-    mesh.join(HalfEdge(t, 2), outside_[previous]);
-    mesh.join(HalfEdge(t, 0), outside_[middle]);
-    if (i + 1 == ears_.size()) mesh.join(HalfEdge(t, 1), outside_[next]);
-    outside_[previous] = HalfEdge(t, 1);
-    fresh.push_back(t);
-  }
-  mesh.release_triangle(link_[link_.size() - 2].triangle());
-  mesh.release_triangle(link_[link_.size() - 1].triangle());
-  mesh.release_vertex(v);
-  return true;
-}
+template void EarQueue::run(const Star&, std::uint32_t, NoCounters&);
+template void EarQueue::run(const Star&, std::uint32_t, Counters&);
 
 }  // namespace tin::removal

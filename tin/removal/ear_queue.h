@@ -1,10 +1,10 @@
-// Ear-queue deletion: the paper's algorithm (Devillers, "On Deletion in Delaunay Triangulations", IJCGA 2002,
-// section 2.4), on the lattice, exact and canonical.
+// The ear queue: the paper's algorithm (Devillers, "On Deletion in Delaunay Triangulations", IJCGA 2002, section 2.4),
+// exact and canonical.
 //
-// The star of the removed vertex p leaves a star-shaped hole. Ears of the hole are cut off in the order in which
-// an observer who rises from the lifted p crosses their planes: the smallest |power| first. (The paper's algorithm
-// takes the minimum of -power, its lemma speaks of the maximum: the algorithm is right.) A hull vertex has the infinite
-// vertex in its link: all finite convex ears go in power order, and what is left is the new hull.
+// Ears of the hole are cut off in the order in which an observer who rises from the lifted removed vertex crosses their
+// planes: the smallest |power| first. (The paper's algorithm takes the minimum of -power, its lemma speaks of the
+// maximum: the algorithm is right.) With the infinite vertex in the link all finite convex ears go in power order, and what
+// is left is the new hull.
 #pragma once
 
 #include <cstdint>
@@ -12,67 +12,77 @@
 #include <vector>
 
 #include "tin/exact/power.h"
-#include "tin/mesh/mesh.h"
+#include "tin/removal/star.h"
 
 namespace tin::removal {
 
-/// A triangle that fills the hole: three positions in the link, in the link's order; `middle` is cut off. In the
-/// last one all three corners are what is left.
-struct Ear {
-  std::uint32_t previous, middle, next;
+/// How a neighbour's power is found when an ear was cut off and one of its corners changed.
+enum class Renewal {
+  kCompute,  // anew, both neighbours: 3k - 8 computations at most
+  kUpdate,   // section 3.2: the previous ear keeps two corners, and only its third is put in: k - 4 of them are updates
 };
 
-/// Works with buffers of its own, so that repeated removals allocate nothing. One thread at a time.
 class EarQueue {
  public:
-  /// Triangulates the hole that removing `v` would leave, without touching the mesh: a trial deletion. The positions
-  /// in the ears index link(). Empty when the other vertices are all collinear: no triangle would be left.
-  /// Requires: dimension 2. Cost: O(k log k) for degree k. The result is valid until the next call.
-  std::span<const Ear> fill(const mesh::Mesh& mesh, mesh::VertexSlot v);
+  explicit EarQueue(Renewal renewal) : renewal_(renewal) {}
 
-  /// The link of the last fill(): half-edges opposite to v, counter-clockwise; position i is its origin.
-  std::span<const mesh::HalfEdge> link() const { return link_; }
-  mesh::VertexSlot link_vertex(std::uint32_t i) const { return ring_[i].vertex; }
+  /// Cuts ears off the hole until `stop` vertices are left (3: until it is filled), or, on the hull, until no finite ear
+  /// is; then closes the hull. Cost: O(k log k) for degree k. Ears and remains are valid until the next call.
+  /// Requires: stop >= 3; the star does not leave a line.
+  template <class Tally>
+  void run(const Star& star, std::uint32_t stop, Tally& tally);
 
-  /// Removes `v` from the mesh; `fresh` becomes the list of triangles made. False, and the mesh untouched, when the other
-  /// vertices are all collinear. Requires: dimension 2.
-  bool remove(mesh::Mesh& mesh, mesh::VertexSlot v, std::vector<mesh::TriangleSlot>& fresh);
+  std::vector<Ear>& ears() { return ears_; }
+  /// Positions left, in order, when run() stopped early; the hole is filled when it is empty.
+  std::span<const std::uint32_t> remains() const { return remains_; }
 
  private:
   struct Node {
-    mesh::VertexSlot vertex;
-    exact::Point point;
     std::uint32_t previous, next;
-    std::uint32_t ear;  // this node's present ear in candidates_, kNoEar if it has none
+    std::uint32_t in_heap;  // index there, kNowhere if it is no ear
   };
-  /// A snapshot: never changed once made, so that the heap's order cannot break when neighbours change.
+  /// The present ear at a node, with its corners as they were when its power was found: between the renewals of two
+  /// neighbours one of them is out of date, and the heap's order must not break.
   struct Candidate {
-    exact::EarPower power;
+    exact::Power power;
+    std::uint32_t previous, next;
+  };
+  struct Entry {
+    double approximate;
     std::uint32_t node;
   };
-  static constexpr std::uint32_t kNoEar = 0xffffffffU;
-  static constexpr std::size_t kLinearLimit = 12;  // up to this degree a scan beats the heap
+  static constexpr std::uint32_t kScanLimit = 12;  // up to this degree a scan beats the heap
 
-  void make_ring(const mesh::Mesh& mesh, mesh::VertexSlot v);
-  bool leaves_a_line(const mesh::Mesh& mesh) const;
-  void renew_ear(std::uint32_t node);
-  std::uint32_t take_smallest();
-  std::uint32_t take_by_scan();
-  std::uint32_t take_from_heap();
+  void begin(const Star& star);
+  template <class Tally>
+  void shell(const Star& star, std::uint32_t stop, Tally& tally);
+  template <class Tally>
+  void renew(const Star& star, std::uint32_t node, bool same_start, Tally& tally);
+  template <class Tally>
+  bool comes_before(const Star& star, const Entry& a, const Entry& b, Tally& tally) const;
+  template <class Tally>
+  std::uint32_t smallest(const Star& star, Tally& tally) const;
+  template <class Tally>
+  void place(const Star& star, const Entry& entry, Tally& tally);
+  template <class Tally>
+  void drop(const Star& star, std::uint32_t node, Tally& tally);
+  template <class Tally>
+  void sift(const Star& star, std::size_t hole, const Entry& entry, Tally& tally);
+  template <class Tally>
+  std::size_t climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally);
+  void put(std::size_t i, const Entry& entry);
   void cut(std::uint32_t node);
-  void close_hull();
 
-  exact::Point removed_;
+  Renewal renewal_;
   bool use_heap_ = false;
-  std::uint32_t infinite_ = kNoEar;  // position of the infinite vertex in the ring
-  std::uint32_t some_node_ = 0;      // a node that is still there
-  std::size_t left_ = 0;
-  std::vector<mesh::HalfEdge> link_;
+  std::uint32_t left_ = 0;
+  std::uint32_t some_node_ = 0;  // a node that is still there
   std::vector<Node> ring_;
-  std::vector<Candidate> candidates_;
-  std::vector<std::uint32_t> heap_;
+  std::vector<Candidate> candidates_;       // by node
+  std::vector<exact::PowerMinors> minors_;  // by node, of the ear's first two corners; only when updating
+  std::vector<Entry> heap_;                 // a heap, or just a set while scanning is cheaper
   std::vector<Ear> ears_;
-  std::vector<mesh::HalfEdge> outside_;
+  std::vector<std::uint32_t> remains_;
 };
 
 }  // namespace tin::removal

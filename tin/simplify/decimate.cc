@@ -74,9 +74,9 @@ void Decimation::queue(VertexSlot v) {
 /// Nothing when a sample would be over the tolerance.
 std::optional<double> Decimation::cost_of_removing(VertexSlot v) {
   double cost = 0;
-  for (const removal::Ear& ear : ears_.fill(tin_.mesh(), v)) {
-    const std::array corners{ears_.link_vertex(ear.previous), ears_.link_vertex(ear.middle),
-                             ears_.link_vertex(ear.next)};
+  for (const removal::Ear& ear : trial_.fill(tin_.mesh(), v)) {
+    const std::array corners{trial_.link_vertex(ear.previous), trial_.link_vertex(ear.middle),
+                             trial_.link_vertex(ear.next)};
     if (std::find(corners.begin(), corners.end(), kInfinite) != corners.end()) continue;
     const Scan scan = tin_.samples().scan(tin_.site(corners[0]), tin_.site(corners[1]), tin_.site(corners[2]),
                                           tolerance_, Depth::kFirstOver);

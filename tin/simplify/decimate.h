@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "tin/removal/ear_queue.h"
+#include "tin/removal/remover.h"
 #include "tin/simplify/phase.h"
 #include "tin/simplify/working_tin.h"
 
@@ -37,7 +37,7 @@ class Decimation {
 
   WorkingTin& tin_;
   double tolerance_;
-  removal::EarQueue ears_;
+  removal::Remover trial_;
   std::vector<Candidate> heap_;
   std::vector<std::uint32_t> stamps_;  // of each vertex: candidates with an older one are void
   std::vector<mesh::HalfEdge> link_;

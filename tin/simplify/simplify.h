@@ -64,7 +64,7 @@ struct Outcome {
 ///           multiples of a power of two (8 otherwise), 20 per sample off the raster, and about 150 per
 ///           vertex kept on the way.
 /// Threads:  reads `source`; safe beside other readers.
-/// Source:   greedy insertion as in Garland and Heckbert 1995; deletion by Devillers' ear queue.
+/// Source:   greedy insertion as in Garland and Heckbert 1995; deletion as in Devillers 2002.
 base::Result<Outcome> simplify(const terrain::Terrain& source, const Options& options,
                                base::Progress* progress);
 

@@ -1,0 +1,119 @@
+#include "tin/removal/star.h"
+
+namespace tin::removal {
+
+using mesh::HalfEdge;
+using mesh::kInfinite;
+using mesh::Mesh;
+using mesh::TriangleSlot;
+using mesh::VertexSlot;
+
+namespace {
+
+/// Where meshes are stored along a curve, with twice as many triangles as vertices, about half of the star's triangles lie
+/// near 2 v. It costs nothing to fetch these lines while the true place is being looked up, and it need not be right.
+void prefetch_guess(const Mesh& mesh, VertexSlot v) {
+  constexpr std::uint32_t kLine = 64 / sizeof(mesh::Triangle) + 1;
+  const std::uint32_t middle = 2 * v.value() - 1;
+  if (middle < kLine || middle + kLine >= mesh.triangle_slots()) return;
+  for (const std::uint32_t slot : {middle - kLine, middle, middle + kLine}) mesh.prefetch(TriangleSlot(slot));
+}
+
+}  // namespace
+
+void Star::gather(const Mesh& mesh, VertexSlot v) {
+  walk_around(mesh, v);
+  removed_ = v;
+  vertices_in_mesh_ = mesh.vertex_count();
+  infinite_ = kNowhere;
+  const std::uint32_t k = degree();
+  outside_.resize(k);
+  vertices_.resize(k);
+  at_.resize(k);
+  const exact::Point origin = mesh.point(v);
+  for (std::uint32_t i = 0; i < k; ++i) {
+    const VertexSlot q = mesh.origin(link_[i]);
+    if (q == kInfinite) infinite_ = i;
+    outside_[i] = mesh.twin(link_[i]);
+    vertices_[i] = q;
+    at_[i] = exact::lift(mesh.point(q), origin);
+  }
+}
+
+/// Finds the link's edges in both directions at a time: each step waits for memory, but the two do not wait for each other.
+/// What will be asked of the neighbourhood next, or written there, is fetched meanwhile.
+void Star::walk_around(const Mesh& mesh, VertexSlot v) {
+  link_.clear();
+  clockwise_.clear();
+  const auto meet = [&mesh](std::vector<HalfEdge>& list, HalfEdge e) {
+    list.push_back(e);
+    mesh.prefetch(mesh.origin(e));
+    mesh.prefetch(mesh.twin(e).triangle());
+  };
+  prefetch_guess(mesh, v);
+  const TriangleSlot first = mesh.triangle_at(v);
+  HalfEdge ahead(first, mesh.index_of(first, v)), behind = ahead;
+  meet(link_, ahead);
+  for (;;) {
+    // Over the edge that ends at v on the one side, and begins there on the other.
+    const HalfEdge next = mesh.twin(ahead.triangle(), mesh::next3(ahead.index()));
+    const HalfEdge last = mesh.twin(behind.triangle(), mesh::prev3(behind.index()));
+    if (next.triangle() == behind.triangle()) break;
+    ahead = HalfEdge(next.triangle(), mesh::next3(next.index()));
+    meet(link_, ahead);
+    if (last.triangle() == ahead.triangle()) break;
+    behind = HalfEdge(last.triangle(), mesh::prev3(last.index()));
+    meet(clockwise_, behind);
+  }
+  link_.insert(link_.end(), clockwise_.rbegin(), clockwise_.rend());
+}
+
+bool Star::leaves_a_line() const {
+  if (!is_on_hull() || degree() != vertices_in_mesh_) return false;
+  const std::uint32_t first = infinite_ == 0 ? 1 : 0;
+  const std::uint32_t second = infinite_ == first + 1 ? first + 2 : first + 1;
+  for (std::uint32_t i = second + 1; i < degree(); ++i) {
+    if (i != infinite_ && exact::orientation(at_[first], at_[second], at_[i]) != 0) return false;
+  }
+  return true;
+}
+
+/// The infinite vertex lies straight up: with it in the determinant only the turn of the other three is left. A collinear
+/// three a, b, c, in the order of the link behind the infinite vertex, have b between a and c, and b stays on the hull:
+/// the line gives way outwards, as if it turned right. (Moving the infinite vertex a little beyond infinity, seen from
+/// the removed one, does this for all lines at once.)
+int Star::hull_sign(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  const std::int64_t turn = exact::orientation(at_[a], at_[b], at_[c]);
+  if (turn != 0) return turn > 0 ? 1 : -1;
+  const auto rank = [this](std::uint32_t i) { return i > infinite_ ? i - infinite_ : i + degree() - infinite_; };
+  const bool ascending = (rank(a) < rank(b)) == ((rank(b) < rank(c)) == (rank(a) < rank(c)));
+  return ascending ? -1 : 1;
+}
+
+bool Star::in_conflict_on_hull(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) const {
+  if (i == infinite_) return hull_sign(l, j, k) > 0;
+  if (j == infinite_) return hull_sign(i, l, k) > 0;
+  if (k == infinite_) return hull_sign(i, j, l) > 0;
+  if (l == infinite_) return hull_sign(i, j, k) < 0;
+  return exact::lifted_sign(at_[i], at_[j], at_[k], at_[l]) > 0;
+}
+
+void Star::refill(Mesh& mesh, std::span<const Ear> ears, std::vector<TriangleSlot>& fresh) {
+  TIN_DCHECK(ears.size() + 2 == link_.size());
+  fresh.clear();
+  for (std::size_t i = 0; i < ears.size(); ++i) {
+    const auto [previous, middle, next] = ears[i];
+    const TriangleSlot t = link_[i].triangle();  // k - 2 of the star's k slots are used again
+    mesh.set_triangle(t, vertices_[previous], vertices_[middle], vertices_[next]);
+    mesh.join(HalfEdge(t, 2), outside_[previous]);
+    mesh.join(HalfEdge(t, 0), outside_[middle]);
+    if (i + 1 == ears.size()) mesh.join(HalfEdge(t, 1), outside_[next]);
+    outside_[previous] = HalfEdge(t, 1);
+    fresh.push_back(t);
+  }
+  mesh.release_triangle(link_[link_.size() - 2].triangle());
+  mesh.release_triangle(link_[link_.size() - 1].triangle());
+  mesh.release_vertex(removed_);
+}
+
+}  // namespace tin::removal
