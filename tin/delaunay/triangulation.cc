@@ -1,36 +1,67 @@
 #include "tin/delaunay/triangulation.h"
 
-#include <algorithm>
-
 #include "tin/base/check.h"
 
 namespace tin::delaunay {
 
+using exact::Point;
 using mesh::kInfinite;
+using mesh::kNone;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
-void Triangulation::remove(VertexSlot v) {
-  TIN_DCHECK(v != kInfinite && mesh_.is_alive(v));
-  if (mesh_.dimension() < 2) {
-    fresh_.clear();
-    std::erase(mesh_.mutable_line(), v);
-    mesh_.release_vertex(v);
-    return;
-  }
-  if (!ears_.remove(mesh_, v, fresh_)) drop_to_line(v);
+namespace {
+constexpr std::uint32_t kPatience = 64;  // triangles that a walk from the grid's hint may cross before the hierarchy is asked
 }
 
-/// All vertices but `gone` are collinear: they become a line again.
-void Triangulation::drop_to_line(VertexSlot gone) {
-  mesh_.clear_triangles();
-  mesh_.release_vertex(gone);
-  auto& line = mesh_.mutable_line();
-  line.clear();
-  for (std::uint32_t i = 1; i < mesh_.vertex_slots(); ++i) {
-    if (mesh_.is_alive(VertexSlot(i))) line.push_back(VertexSlot(i));
+Triangulation::Inserted Triangulation::insert(Point p) {
+  if (mesh().dimension() < 2) return insert_at(p, {});
+  std::uint64_t steps = 0;
+  const Stop stop = find(p, steps);
+  if (steps > kPatience) grid_.give_up(p);
+  return insert_at(p, stop);
+}
+
+Triangulation::Inserted Triangulation::insert_near(Point p, VertexSlot hint) {
+  if (mesh().dimension() < 2) return insert_at(p, {});
+  return insert_at(p, walk(mesh(), p, finite_start(mesh(), mesh().triangle_at(hint)), Everywhere{}));
+}
+
+/// Inserts where a walk stopped; below dimension 2 there is no walk.
+Triangulation::Inserted Triangulation::insert_at(Point p, const Stop& stop) {
+  const Inserted inserted = mesh().dimension() < 2 ? base_.insert_below_plane(p) : base_.insert(p, stop);
+  if (!inserted.fresh) return inserted;
+  if (mesh().dimension() == 2) grid_.remember(mesh(), p, mesh().triangle_at(inserted.vertex));
+  hierarchy_.add(p, inserted.vertex);
+  return inserted;
+}
+
+void Triangulation::remove(VertexSlot v) {
+  TIN_DCHECK(v != kInfinite && mesh().is_alive(v));
+  hierarchy_.remove(mesh().point(v));
+  base_.remove(v);
+  refresh_grid();
+}
+
+void Triangulation::refresh_grid() {
+  if (grid_.outdated(mesh())) grid_.rebuild(mesh());
+}
+
+Stop Triangulation::find(Point p, std::uint64_t& steps) const {
+  if (const TriangleSlot hint = grid_.near(mesh(), p); hint.value() != kNone) {
+    const Stop stop = walk(mesh(), p, finite_start(mesh(), hint), Everywhere{}, kPatience);
+    steps += stop.steps;
+    if (stop.kind != Stop::Kind::kGaveUp) return stop;
   }
-  std::sort(line.begin(), line.end(), [this](VertexSlot a, VertexSlot b) { return mesh_.point(a) < mesh_.point(b); });
+  return find_from_top(p, steps);
+}
+
+Stop Triangulation::find_from_top(Point p, std::uint64_t& steps) const {
+  const VertexSlot near = hierarchy_.near(p, steps);
+  const TriangleSlot start = mesh().triangle_at(near.value() == kNone ? kInfinite : near);
+  const Stop stop = walk(mesh(), p, finite_start(mesh(), start), Everywhere{});
+  steps += stop.steps;
+  return stop;
 }
 
 }  // namespace tin::delaunay
