@@ -83,13 +83,15 @@ bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>
   mesh = Mesh();
   {
     const auto sorted = hilbert_sorted(points, threads);
+    mesh.begin_bulk(sorted.size());
     std::uint32_t last = 0;
     for (std::size_t i = 0; i < sorted.size(); ++i) {
-      if (i == 0 || sorted[i].position != sorted[i - 1].position) ++last;
+      if (i + 4 * kAhead < sorted.size()) __builtin_prefetch(&points[sorted[i + 4 * kAhead].index]);
+      const Point p = points[sorted[i].index];
+      if (last == 0 || p != mesh.point(VertexSlot(last))) mesh.set_point(VertexSlot(++last), p);
       slots[sorted[i].index] = VertexSlot(last);
     }
     mesh.begin_bulk(last);
-    for (std::size_t i = 0; i < sorted.size(); ++i) mesh.set_point(slots[sorted[i].index], points[sorted[i].index]);
   }
   if (!build_bulk(mesh, threads, progress)) return false;
   grid_.rebuild(mesh);

@@ -37,33 +37,38 @@ bool at_vertex(const Stop& stop, VertexSlot& vertex) {
   return false;
 }
 
-inline std::uint32_t Cavity::see(const Corner& corner) {
-  corners_.push_back({corner, corner.x * corner.x + corner.y * corner.y});
-  return static_cast<std::uint32_t>(corners_.size() - 1);
+void Cavity::enlarge() {
+  room_ = room_ == 0 ? 64 : 2 * room_;
+  corners_.resize(room_);
+  to_cross_.resize(room_);
+  rim_.resize(room_);
+  triangles_.resize(room_);
 }
 
 void Cavity::start(const Stop& stop) {
-  corners_.clear();
-  to_cross_.clear();
-  rim_.clear();
-  triangles_.assign(1, stop.triangle);
-  const std::uint32_t c = see(stop.c), b = see(stop.b), a = see(stop.a);
-  to_cross_.push_back({HalfEdge(stop.triangle, next3(stop.apex)), a, c, stop.ac});
-  to_cross_.push_back({HalfEdge(stop.triangle, stop.apex), b, a, stop.ba});
-  to_cross_.push_back({HalfEdge(stop.triangle, prev3(stop.apex)), c, b, stop.cb});
+  if (room_ == 0) enlarge();
+  const auto seen = [](const Corner& at) { return Seen{at, at.x * at.x + at.y * at.y}; };
+  corners_[0] = seen(stop.c);
+  corners_[1] = seen(stop.b);
+  corners_[2] = seen(stop.a);
+  to_cross_[0] = {HalfEdge(stop.triangle, next3(stop.apex)), 2, 0, stop.ac};
+  to_cross_[1] = {HalfEdge(stop.triangle, stop.apex), 1, 2, stop.ba};
+  to_cross_[2] = {HalfEdge(stop.triangle, prev3(stop.apex)), 0, 1, stop.cb};
+  triangles_[0] = stop.triangle;
+  corner_count_ = to_cross_count_ = 3;
+  rim_count_ = 0;
+  triangle_count_ = 1;
 }
 
-/// The perturbed in-circle test of the triangle `to`, `from`, apex; for infinite ones whether p is beyond the hull edge.
-inline bool Cavity::in_conflict(const Mesh& mesh, Point p, const ToCross& edge, const Seen& apex, std::int64_t from_apex,
-                                std::int64_t apex_to) const {
-  const Seen& from = corners_[edge.from];
-  const Seen& to = corners_[edge.to];
-  if (apex.at.vertex == kInfinite) return beyond_hull_edge(to.at, from.at, -edge.cross);
-  if (to.at.vertex == kInfinite) return beyond_hull_edge(from.at, apex.at, from_apex);
-  if (from.at.vertex == kInfinite) return beyond_hull_edge(apex.at, to.at, apex_to);
+/// The perturbed in-circle test of the triangle to, from, apex; for infinite ones whether p is beyond the hull edge.
+inline bool Cavity::in_conflict(const Mesh& mesh, Point p, const Seen& from, const Seen& to, const Seen& apex,
+                                const ToCross& edge, std::int64_t from_apex, std::int64_t apex_to) {
+  if (apex.at.vertex == kInfinite) [[unlikely]] return beyond_hull_edge(to.at, from.at, -edge.cross);
+  if (to.at.vertex == kInfinite) [[unlikely]] return beyond_hull_edge(from.at, apex.at, from_apex);
+  if (from.at.vertex == kInfinite) [[unlikely]] return beyond_hull_edge(apex.at, to.at, apex_to);
   const Int128 determinant =
       Int128{to.square} * from_apex + Int128{from.square} * apex_to - Int128{apex.square} * edge.cross;
-  if (determinant != 0) return determinant > 0;
+  if (determinant != 0) [[likely]] return determinant > 0;
   return exact::tie_is_inside(mesh.point(to.at.vertex), mesh.point(from.at.vertex), mesh.point(apex.at.vertex), p);
 }
 
@@ -73,24 +78,27 @@ template <class Owner>
 bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& owner) {
   if (!owner.owns(stop.a.vertex) || !owner.owns(stop.b.vertex) || !owner.owns(stop.c.vertex)) return false;
   start(stop);
-  while (!to_cross_.empty()) {
-    const ToCross edge = to_cross_.back();
-    to_cross_.pop_back();
-    const HalfEdge beyond = mesh.twin(edge.edge);
-    const TriangleSlot t = beyond.triangle();
-    const Corner corner = corner_at(mesh, mesh.vertex(t, beyond.index()), p);
-    const Seen apex{corner, corner.x * corner.x + corner.y * corner.y};
-    const std::int64_t from_apex = cross(corners_[edge.from].at, corner), apex_to = cross(corner, corners_[edge.to].at);
-    if (!in_conflict(mesh, p, edge, apex, from_apex, apex_to)) {
-      rim_.push_back({beyond, edge.from});
-      continue;
+  while (to_cross_count_ > 0) {
+    ToCross edge = to_cross_[--to_cross_count_];
+    for (;;) {
+      const HalfEdge beyond = mesh.twin(edge.edge);
+      const TriangleSlot t = beyond.triangle();
+      const Corner corner = corner_at(mesh, mesh.vertex(t, beyond.index()), p);
+      const Seen apex{corner, corner.x * corner.x + corner.y * corner.y};
+      const Seen &from = corners_[edge.from], &to = corners_[edge.to];
+      const std::int64_t from_apex = cross(from.at, corner), apex_to = cross(corner, to.at);
+      if (!in_conflict(mesh, p, from, to, apex, edge, from_apex, apex_to)) {
+        rim_[rim_count_++] = {beyond, edge.from};
+        break;
+      }
+      if (!owner.owns(corner.vertex)) return false;
+      if (corner_count_ + 2 > room_) enlarge();
+      const auto middle = static_cast<std::uint32_t>(corner_count_++);
+      triangles_[triangle_count_++] = t;
+      corners_[middle] = apex;
+      to_cross_[to_cross_count_++] = {HalfEdge(t, prev3(beyond.index())), middle, edge.to, apex_to};
+      edge = {HalfEdge(t, next3(beyond.index())), edge.from, middle, from_apex};
     }
-    if (!owner.owns(corner.vertex)) return false;
-    triangles_.push_back(t);
-    const auto middle = static_cast<std::uint32_t>(corners_.size());
-    corners_.push_back(apex);
-    to_cross_.push_back({HalfEdge(t, prev3(beyond.index())), middle, edge.to, apex_to});
-    to_cross_.push_back({HalfEdge(t, next3(beyond.index())), edge.from, middle, from_apex});
   }
   return true;
 }
@@ -99,9 +107,9 @@ template bool Cavity::carve(const Mesh&, Point, const Stop&, const Everywhere&);
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const Territory&);
 
 void Cavity::fill(Mesh& mesh, VertexSlot v, TriangleSlot extra1, TriangleSlot extra2) {
-  triangles_.push_back(extra1);
-  triangles_.push_back(extra2);
-  const std::size_t count = rim_.size();
+  triangles_[triangle_count_++] = extra1;
+  triangles_[triangle_count_++] = extra2;
+  const std::size_t count = rim_count_;
   VertexSlot from = corners_[rim_[0].from].at.vertex;
   const VertexSlot first = from;
   for (std::size_t i = 0; i < count; ++i) {

@@ -29,7 +29,7 @@ class Cavity {
   /// A triangle in conflict, after carve().
   mesh::TriangleSlot some_triangle() const { return triangles_.front(); }
   /// The new star, after fill().
-  std::span<const mesh::TriangleSlot> star() const { return triangles_; }
+  std::span<const mesh::TriangleSlot> star() const { return {triangles_.data(), triangle_count_}; }
 
  private:
   struct Seen {
@@ -46,11 +46,15 @@ class Cavity {
     std::uint32_t from;
   };
 
-  std::uint32_t see(const Corner& corner);
   void start(const Stop& stop);
-  bool in_conflict(const mesh::Mesh& mesh, exact::Point p, const ToCross& edge, const Seen& apex, std::int64_t from_apex,
-                   std::int64_t apex_to) const;
+  void enlarge();
+  static bool in_conflict(const mesh::Mesh& mesh, exact::Point p, const Seen& from, const Seen& to, const Seen& apex,
+                          const ToCross& edge, std::int64_t from_apex, std::int64_t apex_to);
 
+  // Plain arrays, all of one size that enlarge() doubles before they could overflow: with t triangles in conflict so far,
+  // there are t + 2 corners, and at most as many edges to cross and as many on the rim.
+  std::size_t room_ = 0;
+  std::size_t corner_count_ = 0, to_cross_count_ = 0, rim_count_ = 0, triangle_count_ = 0;
   std::vector<Seen> corners_;
   std::vector<ToCross> to_cross_;
   std::vector<Rim> rim_;                         // counter-clockwise

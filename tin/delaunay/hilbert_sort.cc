@@ -8,6 +8,9 @@
 #include "tin/delaunay/threads.h"
 
 namespace tin::delaunay {
+
+using exact::Point;
+
 namespace {
 
 constexpr std::size_t kSmall = 24;     // sorted by insertion
@@ -15,7 +18,7 @@ constexpr int kMaxDigit = 11;          // bits: as many buckets as the caches an
 constexpr std::size_t kMaxBuckets = std::size_t{1} << kMaxDigit;
 
 bool before(const OnCurve& a, const OnCurve& b) {
-  return a.position != b.position ? a.position < b.position : a.index < b.index;
+  return a.key != b.key ? a.key < b.key : a.index < b.index;
 }
 
 void insertion_sort(OnCurve* a, std::size_t n) {
@@ -27,33 +30,33 @@ void insertion_sort(OnCurve* a, std::size_t n) {
   }
 }
 
-/// The topmost digit in which positions differ.
+/// The topmost digit in which keys differ.
 struct Digit {
   int shift;
   int bits;
   std::size_t of(const OnCurve& item) const {
-    return static_cast<std::size_t>(item.position >> shift) & ((std::size_t{1} << bits) - 1);
+    return static_cast<std::size_t>(item.key >> shift) & ((std::size_t{1} << bits) - 1);
   }
 };
 
-/// About four items to a bucket, so that the next round ends. `differ` has a bit where two positions differ, and is not 0.
-Digit choose_digit(std::uint64_t differ, std::size_t n) {
-  const int top = 64 - std::countl_zero(differ);
+/// About four items to a bucket, so that the next round ends. `differ` has a bit where two keys differ, and is not 0.
+Digit choose_digit(std::uint32_t differ, std::size_t n) {
+  const int top = 32 - std::countl_zero(differ);
   const int wanted = std::clamp(static_cast<int>(std::bit_width(n)) - 3, 3, kMaxDigit);
   const int bits = std::min(wanted, top);
   return {top - bits, bits};
 }
 
-std::uint64_t differing_bits(const OnCurve* a, std::size_t n) {
-  std::uint64_t differ = 0;
-  for (std::size_t i = 1; i < n; ++i) differ |= a[i].position ^ a[0].position;
+std::uint32_t differing_bits(const OnCurve* a, std::size_t n) {
+  std::uint32_t differ = 0;
+  for (std::size_t i = 1; i < n; ++i) differ |= a[i].key ^ a[0].key;
   return differ;
 }
 
-/// Sorts a[0..n), using scratch[0..n). Stable from equal positions in ascending index: scattering keeps their order.
+/// Sorts a[0..n), using scratch[0..n). Equal keys stay in ascending order of their index.
 void sort_range(OnCurve* a, OnCurve* scratch, std::size_t n) {
   if (n <= kSmall) return insertion_sort(a, n);
-  const std::uint64_t differ = differing_bits(a, n);
+  const std::uint32_t differ = differing_bits(a, n);
   if (differ == 0) return;
   const Digit digit = choose_digit(differ, n);
   std::array<std::uint32_t, kMaxBuckets + 1> ends;
@@ -124,19 +127,62 @@ class FirstRound {
   std::array<std::uint32_t, kMaxBuckets + 1> starts_{};
 };
 
-}  // namespace
+/// How far down positions are shifted to make keys: so that the topmost bit in which two positions differ is kept.
+int key_shift(std::span<const Point> points, unsigned threads) {
+  if (points.empty()) return 0;
+  const std::uint64_t first = hilbert_index(points[0]);
+  std::vector<std::uint64_t> differ(threads, 0);
+  on_threads(threads, [&](unsigned thread) {
+    // The curve goes through a square of 2^k by 2^k cells without leaving it: corners of the extent tell as much as all points.
+    Point low = points[0], high = points[0];
+    for (std::size_t i = part_begin(points.size(), thread, threads); i < part_begin(points.size(), thread + 1, threads); ++i) {
+      low = {std::min(low.x, points[i].x), std::min(low.y, points[i].y)};
+      high = {std::max(high.x, points[i].x), std::max(high.y, points[i].y)};
+    }
+    for (const Point p : {low, high, Point{low.x, high.y}, Point{high.x, low.y}}) differ[thread] |= hilbert_index(p) ^ first;
+  });
+  std::uint64_t all = 0;
+  for (const std::uint64_t bits : differ) all |= bits;
+  return std::max(0, 64 - std::countl_zero(all) - 32);
+}
 
-mesh::PageVector<OnCurve> hilbert_sorted(std::span<const exact::Point> points, unsigned threads) {
+mesh::PageVector<OnCurve> sorted_by_key(std::span<const Point> points, int shift, unsigned threads) {
   mesh::PageVector<OnCurve> items(points.size()), scratch(points.size());
   on_threads(threads, [&](unsigned thread) {
     for (std::size_t i = part_begin(points.size(), thread, threads); i < part_begin(points.size(), thread + 1, threads); ++i) {
-      items[i] = {hilbert_index(points[i]), static_cast<std::uint32_t>(i)};
+      items[i] = {static_cast<std::uint32_t>(hilbert_index(points[i]) >> shift), static_cast<std::uint32_t>(i)};
     }
   });
-  const std::uint64_t differ = differing_bits(items.data(), items.size());
+  const std::uint32_t differ = differing_bits(items.data(), items.size());
   if (differ == 0) return items;
   FirstRound(items, scratch, choose_digit(differ, items.size()), threads).run();
   return scratch;
+}
+
+/// Sorts points with one key, which may differ further down: a second key of 32 bits reaches the end.
+void refine(std::span<const Point> points, std::span<OnCurve> run) {
+  std::vector<Point> own;
+  std::vector<std::uint32_t> indices;
+  for (const OnCurve& item : run) {
+    own.push_back(points[item.index]);
+    indices.push_back(item.index);
+  }
+  const auto sorted = hilbert_sorted(own);
+  for (std::size_t i = 0; i < run.size(); ++i) run[i].index = indices[sorted[i].index];
+}
+
+}  // namespace
+
+mesh::PageVector<OnCurve> hilbert_sorted(std::span<const Point> points, unsigned threads) {
+  const int shift = key_shift(points, threads);
+  auto items = sorted_by_key(points, shift, threads);
+  std::size_t begin = 0;
+  for (std::size_t i = 1; shift > 0 && i <= items.size(); ++i) {
+    if (i < items.size() && items[i].key == items[begin].key) continue;
+    if (i - begin > 1) refine(points, std::span(items).subspan(begin, i - begin));
+    begin = i;
+  }
+  return items;
 }
 
 }  // namespace tin::delaunay

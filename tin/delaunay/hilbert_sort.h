@@ -10,11 +10,12 @@
 namespace tin::delaunay {
 
 struct OnCurve {
-  std::uint64_t position;
+  std::uint32_t key;    // the 32 bits of the position on the curve in which the sorted points first differ
   std::uint32_t index;  // of the point in the input
 };
 
-/// `points` by ascending position; equal points by ascending index. The same for any number of threads.
+/// `points` along the curve; equal points by ascending index. The same for any number of threads.
+/// Cost: O(n); 16 bytes per point while it works.
 mesh::PageVector<OnCurve> hilbert_sorted(std::span<const exact::Point> points, unsigned threads = 1);
 
 }  // namespace tin::delaunay

@@ -1,5 +1,7 @@
 #include "tin/mesh/mesh.h"
 
+#include <algorithm>
+
 namespace tin::mesh {
 
 Mesh::Mesh() : points_(1, exact::Point{}), star_(1, kNoTriangle) {}
@@ -120,14 +122,17 @@ void Mesh::begin_bulk(std::size_t count) {
   free_vertices_.clear();
   free_triangles_.clear();
   points_.resize(count + 1);
-  star_.assign(count + 1, kNoTriangle);
+  star_.resize(count + 1);
   triangles_.resize(2 * count);
 }
 
 void Mesh::end_bulk(std::span<const TriangleSlot> unused) {
   vertex_count_ = points_.size() - 1;
   triangle_count_ = triangles_.size();
-  if (unused.size() == triangles_.size()) return clear_triangles();
+  if (unused.size() == triangles_.size()) {
+    std::fill(star_.begin(), star_.end(), kNoTriangle);
+    return clear_triangles();
+  }
   for (const TriangleSlot t : unused) release_triangle(t);
 }
 

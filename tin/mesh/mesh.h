@@ -119,7 +119,7 @@ class Mesh {
   void reserve(std::size_t vertices);
 
   /// Bulk building of an empty mesh: makes vertices 1..count, whose points the caller then sets, and room for twice as many
-  /// triangles, which the caller writes with write_triangle(). Vertices have no triangle yet.
+  /// triangles, which the caller writes with write_triangle(). Again with a smaller count, the first points stay.
   void begin_bulk(std::size_t count);
   void set_point(VertexSlot v, exact::Point p) { points_[v.value()] = p; }
   /// All of the 2 * count triangles are written but those in `unused` (all of them when the vertices are collinear).
