@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kBetweenReports = 4096;
 constexpr std::size_t kAhead = 4;    // how many operations ahead memory is asked for, per dependent load
+constexpr std::size_t kWorthAThread = 20000;  // points
 constexpr std::size_t kTogether = 16;  // stars fetched in turns
 
 /// Reports after each 4096th operation. False when it is time to stop.
@@ -79,6 +80,7 @@ bool Triangulation::insert_many(std::span<const Point> points, std::vector<Verte
 bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
                           unsigned threads) {
   if (points.empty()) return true;
+  threads = static_cast<unsigned>(std::clamp<std::size_t>(points.size() / kWorthAThread, 1, std::max(threads, 1U)));
   Mesh& mesh = base_.mutable_mesh();
   mesh = Mesh();
   {

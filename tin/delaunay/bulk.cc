@@ -21,7 +21,6 @@ using mesh::VertexSlot;
 
 constexpr std::uint32_t kStride = 8;
 constexpr std::uint32_t kFirstStride = kStride * kStride;
-constexpr std::uint32_t kWorthAThread = 20000;  // vertices
 constexpr std::uint32_t kBetweenReports = 4096;
 
 TriangleSlot first_slot(VertexSlot v) { return TriangleSlot(2 * v.value() - 2); }
@@ -36,7 +35,7 @@ class Builder {
       make_line();
       return true;
     }
-    const bool done = insert_all(std::clamp(count() / kWorthAThread, 1U, std::max(threads, 1U)));
+    const bool done = insert_all(threads);
     if (done) mesh_.end_bulk(std::array{first_slot(first_[2]), second_slot(first_[2])});
     return done;
   }

@@ -18,7 +18,7 @@
 namespace tin::delaunay {
 
 /// Requires: mesh.begin_bulk() was called and all points are set, distinct, along the Hilbert curve (any other order
-/// gives the same mesh more slowly). False when `progress` was cancelled: then the mesh is to be thrown away.
+/// gives the same mesh more slowly); threads >= 1. False when `progress` was cancelled: then the mesh is to be thrown away.
 bool build_bulk(mesh::Mesh& mesh, unsigned threads, base::Progress* progress);
 
 }  // namespace tin::delaunay

@@ -52,7 +52,9 @@ Location Triangulation::locate_from(Point p, TriangleSlot hint) const {
 class ManyWalks {
  public:
   ManyWalks(const Triangulation& triangulation, std::span<const Point> points, std::vector<Location>& locations)
-      : triangulation_(triangulation), mesh_(triangulation.mesh()), points_(points), locations_(locations) {}
+      : triangulation_(triangulation), mesh_(triangulation.mesh()), points_(points), locations_(locations) {
+    if (points.size() >= kWorthSorting) order_ = hilbert_sorted(points);
+  }
 
   void run() {
     const std::size_t width = std::min(kWalks, points_.size());
@@ -74,6 +76,7 @@ class ManyWalks {
 
  private:
   static constexpr std::size_t kWalks = 24;
+  static constexpr std::size_t kWorthSorting = 4096;
   enum class Stage { kCell, kHint, kPoints, kWalk };
   struct Walk {
     std::size_t index;
@@ -82,7 +85,8 @@ class ManyWalks {
   };
 
   void begin(Walk& walk) {
-    walk = {next_++, Stage::kCell, TriangleSlot(kNone)};
+    walk = {order_.empty() ? next_ : order_[next_].index, Stage::kCell, TriangleSlot(kNone)};
+    ++next_;
     triangulation_.grid_.prefetch_cell(points_[walk.index]);
   }
 
@@ -98,15 +102,16 @@ class ManyWalks {
         return true;
       case Stage::kHint:
         if (!mesh_.is_alive(w.triangle)) return finish(w, triangulation_.locate(p));
-        for (const VertexSlot v : mesh_.triangle(w.triangle).vertices) mesh_.prefetch_point(v);
+        fetch_around(w.triangle);
         w.stage = Stage::kPoints;
         return true;
       case Stage::kPoints:
         w.triangle = triangulation_.grid_.near(mesh_, p);
         if (w.triangle.value() == kNone) return finish(w, triangulation_.locate(p));
+        fetch_across(w.triangle);
         w.triangle = finite_start(mesh_, w.triangle);
         w.stage = Stage::kWalk;
-        return advance(w, p);
+        return true;
       case Stage::kWalk: break;
     }
     return advance(w, p);
@@ -116,7 +121,19 @@ class ManyWalks {
     const Stop stop = walk(mesh_, p, w.triangle, Everywhere{}, kStride);
     if (stop.kind != Stop::Kind::kGaveUp) return finish(w, location_of(stop));
     w.triangle = stop.triangle;
+    fetch_around(w.triangle);
     return true;
+  }
+
+  void fetch_around(TriangleSlot t) const {
+    for (int i = 0; i < 3; ++i) {
+      mesh_.prefetch_point(mesh_.vertex(t, i));
+      mesh_.prefetch(mesh_.twin(t, i).triangle());
+    }
+  }
+
+  void fetch_across(TriangleSlot t) const {
+    for (int i = 0; i < 3; ++i) mesh_.prefetch_point(mesh_.apex(mesh_.twin(t, i)));
   }
 
   bool finish(const Walk& w, const Location& location) {
@@ -124,12 +141,13 @@ class ManyWalks {
     return false;
   }
 
-  static constexpr std::uint32_t kStride = 64;
+  static constexpr std::uint32_t kStride = 2;
 
   const Triangulation& triangulation_;
   const mesh::Mesh& mesh_;
   const std::span<const Point> points_;
   std::vector<Location>& locations_;
+  mesh::PageVector<OnCurve> order_;  // along the curve walks share what they fetch; empty for few points
   std::size_t next_ = 0;
   std::array<Walk, kWalks> walks_{};
 };

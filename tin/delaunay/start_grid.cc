@@ -1,6 +1,7 @@
 #include "tin/delaunay/start_grid.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tin::delaunay {
 
@@ -13,7 +14,6 @@ using mesh::VertexSlot;
 
 namespace {
 
-constexpr std::size_t kVerticesPerCell = 2;
 constexpr std::uint8_t kCrowd = 64;                // vertices in a cell from which on the hierarchy is the quicker way
 constexpr std::uint32_t kCrowded = kNone - 1;      // in a cell without a hint
 
@@ -25,13 +25,6 @@ void each_vertex(const Mesh& mesh, const F& f) {
 }
 
 }  // namespace
-
-std::size_t StartGrid::cell(Point p) const {
-  const auto clamp = [this](std::int64_t offset, std::uint32_t count) {
-    return static_cast<std::size_t>(std::clamp<std::int64_t>(offset >> shift_, 0, std::int64_t{count} - 1));
-  };
-  return clamp(std::int64_t{p.y} - low_.y, rows_) * columns_ + clamp(std::int64_t{p.x} - low_.x, columns_);
-}
 
 void StartGrid::remember(const Mesh& mesh, Point p, TriangleSlot t) {
   if (outdated(mesh)) rebuild(mesh);
@@ -52,14 +45,20 @@ void StartGrid::fit(const Mesh& mesh) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   });
-  const auto width = static_cast<std::uint64_t>(std::int64_t{high.x} - low.x);
-  const auto height = static_cast<std::uint64_t>(std::int64_t{high.y} - low.y);
-  const std::size_t cells = std::max<std::size_t>(1, mesh.vertex_count() / kVerticesPerCell);
-  low_ = low;
-  shift_ = 0;
-  while (((width >> shift_) + 1) * ((height >> shift_) + 1) > cells) ++shift_;
-  columns_ = static_cast<std::uint32_t>((width >> shift_) + 1);
-  rows_ = static_cast<std::uint32_t>((height >> shift_) + 1);
+  const double width = double(high.x) - low.x + 1, height = double(high.y) - low.y + 1;
+  const double side = std::max(std::sqrt(width * height / double(mesh.vertex_count())), 1.0);
+  x_ = make_axis(low.x, high.x, side);
+  y_ = make_axis(low.y, high.y, side);
+  reach_ = static_cast<std::int64_t>(4 * side) + 1;
+}
+
+/// At most as many cells as whole sides fit, so that the product of both counts stays near the number of vertices.
+StartGrid::Axis StartGrid::make_axis(std::int64_t low, std::int64_t high, double side) {
+  Axis axis{low, high - low, 1, 0};
+  axis.count = static_cast<std::uint32_t>(std::max(1.0, double(axis.last + 1) / side));
+  // Rounded down, so that the last unit falls into the last cell. Fits: an axis has fewer than 2^31 units and cells.
+  axis.scale = (std::uint64_t{axis.count} << 32) / static_cast<std::uint64_t>(axis.last + 1);
+  return axis;
 }
 
 void StartGrid::rebuild(const Mesh& mesh) {
@@ -68,7 +67,7 @@ void StartGrid::rebuild(const Mesh& mesh) {
   hints_.clear();
   if (mesh.dimension() < 2) return;
   fit(mesh);
-  hints_.assign(std::size_t{columns_} * rows_, kNone);
+  hints_.assign(std::size_t{x_.count} * y_.count, kNone);
   each_vertex(mesh, [&](VertexSlot v) { hints_[cell(mesh.point(v))] = mesh.triangle_at(v).value(); });
   // Empty cells take over the hint before them: near enough where cells are empty by chance.
   std::uint32_t last = kNone;
@@ -91,12 +90,13 @@ TriangleSlot StartGrid::near(const Mesh& mesh, Point p) const {
   const TriangleSlot none{kNone};
   if (hints_.empty()) return none;
   const TriangleSlot t{hints_[cell(p)]};
-  if (t.value() >= mesh.triangle_slots() || !mesh.is_alive(t)) return none;
+  if (t.value() >= mesh.triangle_slots()) return none;
+  mesh.prefetch_around(t);
+  if (!mesh.is_alive(t)) return none;
   const auto& vertices = mesh.triangle(t).vertices;
   const Point q = mesh.point(vertices[0] == kInfinite ? vertices[1] : vertices[0]);
-  const std::int64_t reach = std::int64_t{4} << shift_;
   const std::int64_t dx = std::int64_t{p.x} - q.x, dy = std::int64_t{p.y} - q.y;
-  return std::max(dx, -dx) <= reach && std::max(dy, -dy) <= reach ? t : none;
+  return std::max(dx, -dx) <= reach_ && std::max(dy, -dy) <= reach_ ? t : none;
 }
 
 }  // namespace tin::delaunay

@@ -15,7 +15,7 @@ class StartGrid {
  public:
   /// Remembers `t` for the place `p`. Makes the grid anew when the mesh has outgrown it or left it too large.
   void remember(const mesh::Mesh& mesh, exact::Point p, mesh::TriangleSlot t);
-  /// Makes the grid anew, two vertices to a cell.
+  /// Makes the grid anew, one vertex to a cell.
   void rebuild(const mesh::Mesh& mesh);
   /// A walk from the hint for `p` was long: the cell has become crowded, and gives none until the grid is made anew.
   void give_up(exact::Point p);
@@ -38,12 +38,24 @@ class StartGrid {
 
  private:
   void fit(const mesh::Mesh& mesh);
-  std::size_t cell(exact::Point p) const;
+  std::size_t cell(exact::Point p) const { return y_.cell(p.y) * x_.count + x_.cell(p.x); }
   void mark_crowded_cells(const mesh::Mesh& mesh);
 
-  exact::Point low_;
-  int shift_ = 30;  // a cell's side is 2^shift_ lattice units
-  std::uint32_t columns_ = 0, rows_ = 0;
+  /// One axis: `count` cells over [low, low + last].
+  struct Axis {
+    std::int64_t low = 0, last = 0;
+    std::uint32_t count = 1;
+    std::uint64_t scale = 0;  // cells per lattice unit, in units of 2^-32
+    std::size_t cell(std::int32_t at) const {
+      const std::int64_t offset = at - low;
+      const auto inside = static_cast<std::uint64_t>(offset < 0 ? 0 : offset > last ? last : offset);
+      return static_cast<std::size_t>(inside * scale >> 32);
+    }
+  };
+  static Axis make_axis(std::int64_t low, std::int64_t high, double side);
+
+  Axis x_, y_;
+  std::int64_t reach_ = 0;  // how far a hint that is worth following may be
   std::size_t outgrown_at_ = 16;
   std::size_t too_large_at_ = 0;
   std::vector<std::uint32_t> hints_;
