@@ -57,42 +57,39 @@ Hierarchy::Found Hierarchy::find(const Mesh& mesh, Point p, VertexSlot from, std
   return {v, mesh.point(v) == p};
 }
 
-VertexSlot Hierarchy::near(Point p, std::uint64_t& steps) const {
+template <class Visit>
+VertexSlot Hierarchy::descend(Point p, std::uint64_t& steps, const Visit& visit) const {
   VertexSlot v{kNone};
   for (std::size_t k = levels_.size(); k-- > 0;) {
     const Found found = find(levels_[k].layer.mesh(), p, v, steps);
+    visit(k, found);
     v = found.vertex.value() == kNone ? found.vertex : levels_[k].below[found.vertex.value()];
   }
   return v;
+}
+
+VertexSlot Hierarchy::near(Point p, std::uint64_t& steps) const {
+  return descend(p, steps, [](std::size_t, const Found&) {});
 }
 
 void Hierarchy::add(Point p, VertexSlot slot) {
   const std::size_t height = height_of(p);
   if (height == 0) return;
   if (levels_.size() < height) levels_.resize(height);
-  std::vector<VertexSlot> starts(levels_.size(), VertexSlot(kNone));
+  std::vector<VertexSlot> nearest(levels_.size());
   std::uint64_t steps = 0;
-  VertexSlot v{kNone};
-  for (std::size_t k = levels_.size(); k-- > 0;) {
-    starts[k] = v;
-    v = find(levels_[k].layer.mesh(), p, v, steps).vertex;
-    if (v.value() != kNone) v = levels_[k].below[v.value()];
-  }
+  descend(p, steps, [&](std::size_t k, const Found& found) { nearest[k] = found.vertex; });
   VertexSlot below = slot;
   for (std::size_t k = 0; k < height; ++k) {
-    Layer& layer = levels_[k].layer;
+    auto& [layer, below_of] = levels_[k];
     const Mesh& mesh = layer.mesh();
-    Layer::Inserted inserted;
-    if (mesh.dimension() < 2) {
-      inserted = layer.insert_below_plane(p);
-    } else {
-      const auto start = mesh.triangle_at(starts[k].value() == kNone ? kInfinite : starts[k]);
-      inserted = layer.insert(p, walk(mesh, p, finite_start(mesh, start), Everywhere{}));
-    }
-    TIN_CHECK(inserted.fresh);
-    if (inserted.vertex.value() >= levels_[k].below.size()) levels_[k].below.resize(inserted.vertex.value() + 1);
-    levels_[k].below[inserted.vertex.value()] = below;
-    below = inserted.vertex;
+    const auto start = [&] { return finite_start(mesh, mesh.triangle_at(nearest[k])); };
+    const auto [v, fresh] = mesh.dimension() < 2 ? layer.insert_below_plane(p)
+                                                 : layer.insert(p, walk(mesh, p, start(), Everywhere{}));
+    TIN_CHECK(fresh);
+    if (v.value() >= below_of.size()) below_of.resize(v.value() + 1);
+    below_of[v.value()] = below;
+    below = v;
   }
 }
 
@@ -101,15 +98,11 @@ void Hierarchy::remove(Point p) {
   if (height == 0) return;
   std::vector<VertexSlot> gone(height);
   std::uint64_t steps = 0;
-  VertexSlot v{kNone};
-  for (std::size_t k = levels_.size(); k-- > 0;) {
-    const Found found = find(levels_[k].layer.mesh(), p, v, steps);
-    if (k < height) {
-      TIN_CHECK(found.exact);
-      gone[k] = found.vertex;
-    }
-    v = found.vertex.value() == kNone ? found.vertex : levels_[k].below[found.vertex.value()];
-  }
+  descend(p, steps, [&](std::size_t k, const Found& found) {
+    if (k >= height) return;
+    TIN_CHECK(found.exact);
+    gone[k] = found.vertex;
+  });
   for (std::size_t k = 0; k < height; ++k) levels_[k].layer.remove(gone[k]);
 }
 

@@ -44,6 +44,9 @@ class Hierarchy {
     bool exact;
   };
 
+  /// Calls visit(k, found) for each level from the top down. Returns the base vertex found in the end, or kNone.
+  template <class Visit>
+  mesh::VertexSlot descend(exact::Point p, std::uint64_t& steps, const Visit& visit) const;
   static Found find(const mesh::Mesh& mesh, exact::Point p, mesh::VertexSlot from, std::uint64_t& steps);
 
   std::vector<Level> levels_;

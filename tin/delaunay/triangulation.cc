@@ -38,6 +38,8 @@ Triangulation::Inserted Triangulation::insert_at(Point p, const Stop& stop) {
 
 void Triangulation::remove(VertexSlot v) {
   TIN_DCHECK(v != kInfinite && mesh().is_alive(v));
+  mesh().prefetch(v);
+  mesh().prefetch_around(TriangleSlot(2 * v.value()));
   hierarchy_.remove(mesh().point(v));
   base_.remove(v);
   refresh_grid();
