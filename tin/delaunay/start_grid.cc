@@ -14,6 +14,7 @@ using mesh::VertexSlot;
 
 namespace {
 
+constexpr double kVerticesPerCell = 1.5;           // finer is hardly quicker, and keeps no 72 bytes per vertex
 constexpr std::uint8_t kCrowd = 64;                // vertices in a cell from which on the hierarchy is the quicker way
 constexpr std::uint32_t kCrowded = kNone - 1;      // in a cell without a hint
 
@@ -46,7 +47,7 @@ void StartGrid::fit(const Mesh& mesh) {
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   });
   const double width = double(high.x) - low.x + 1, height = double(high.y) - low.y + 1;
-  const double side = std::max(std::sqrt(width * height / double(mesh.vertex_count())), 1.0);
+  const double side = std::max(std::sqrt(width * height * kVerticesPerCell / double(mesh.vertex_count())), 1.0);
   x_ = make_axis(low.x, high.x, side);
   y_ = make_axis(low.y, high.y, side);
   reach_ = static_cast<std::int64_t>(4 * side) + 1;

@@ -15,7 +15,7 @@ class StartGrid {
  public:
   /// Remembers `t` for the place `p`. Makes the grid anew when the mesh has outgrown it or left it too large.
   void remember(const mesh::Mesh& mesh, exact::Point p, mesh::TriangleSlot t);
-  /// Makes the grid anew, one vertex to a cell.
+  /// Makes the grid anew, one or two vertices to a cell.
   void rebuild(const mesh::Mesh& mesh);
   /// A walk from the hint for `p` was long: the cell has become crowded, and gives none until the grid is made anew.
   void give_up(exact::Point p);

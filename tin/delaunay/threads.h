@@ -1,18 +1,27 @@
 // Running a function once per thread.
 #pragma once
 
+#include <cstddef>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace tin::delaunay {
 
-/// Calls f(0) .. f(threads - 1) at the same time, f(0) on this thread, and waits for all. f must not throw.
+/// Calls f(0) .. f(threads - 1) at the same time, f(0) on this thread, and waits for all; one after the other where the system
+/// gives no more threads. f must not throw.
 template <class F>
 void on_threads(unsigned threads, const F& f) {
   std::vector<std::thread> others;
   others.reserve(threads);
-  for (unsigned i = 1; i < threads; ++i) others.emplace_back([&f, i] { f(i); });
+  unsigned started = 1;
+  try {
+    for (; started < threads; ++started) others.emplace_back([&f, i = started] { f(i); });
+  } catch (const std::system_error&) {
+    // What has no thread of its own is done here.
+  }
   f(0);
+  for (unsigned i = started; i < threads; ++i) f(i);
   for (std::thread& other : others) other.join();
 }
 

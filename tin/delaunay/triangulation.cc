@@ -17,8 +17,11 @@ constexpr std::uint32_t kPatience = 64;  // triangles that a walk from the grid'
 Triangulation::Inserted Triangulation::insert(Point p) {
   if (mesh().dimension() < 2) return insert_at(p, {});
   std::uint64_t steps = 0;
-  const Stop stop = find(p, steps);
-  if (steps > kPatience) grid_.give_up(p);
+  Stop stop = find_from_hint(p, steps);
+  if (stop.kind == Stop::Kind::kGaveUp) {
+    if (steps >= kPatience) grid_.give_up(p);
+    stop = find_from_top(p, steps);
+  }
   return insert_at(p, stop);
 }
 
@@ -50,12 +53,21 @@ void Triangulation::refresh_grid() {
 }
 
 Stop Triangulation::find(Point p, std::uint64_t& steps) const {
-  if (const TriangleSlot hint = grid_.near(mesh(), p); hint.value() != kNone) {
-    const Stop stop = walk(mesh(), p, finite_start(mesh(), hint), Everywhere{}, kPatience);
-    steps += stop.steps;
-    if (stop.kind != Stop::Kind::kGaveUp) return stop;
+  const Stop stop = find_from_hint(p, steps);
+  return stop.kind == Stop::Kind::kGaveUp ? find_from_top(p, steps) : stop;
+}
+
+/// Gives up when the grid has no hint, or after so many steps that the hierarchy is the better way.
+Stop Triangulation::find_from_hint(Point p, std::uint64_t& steps) const {
+  const TriangleSlot hint = grid_.near(mesh(), p);
+  if (hint.value() == kNone) {
+    Stop none{};
+    none.kind = Stop::Kind::kGaveUp;
+    return none;
   }
-  return find_from_top(p, steps);
+  const Stop stop = walk(mesh(), p, finite_start(mesh(), hint), Everywhere{}, kPatience);
+  steps += stop.steps;
+  return stop;
 }
 
 Stop Triangulation::find_from_top(Point p, std::uint64_t& steps) const {

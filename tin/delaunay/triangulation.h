@@ -89,6 +89,7 @@ class Triangulation {
   friend class ManyWalks;
 
   Stop find(exact::Point p, std::uint64_t& steps) const;
+  Stop find_from_hint(exact::Point p, std::uint64_t& steps) const;
   Stop find_from_top(exact::Point p, std::uint64_t& steps) const;
   Inserted insert_at(exact::Point p, const Stop& stop);
   bool build(std::span<const exact::Point> points, std::vector<mesh::VertexSlot>& slots, base::Progress* progress,
