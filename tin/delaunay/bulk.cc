@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <vector>
 
 #include "tin/delaunay/cavity.h"
@@ -149,9 +148,13 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
   for (const std::uint32_t stride : {kStride, 1U}) {
     for (std::uint32_t i = territory.begin; i < territory.end; i += stride) {
       if ((i - 1) % (stride * kStride) == 0 || is_in_first_triangle(VertexSlot(i))) continue;
-      const bool inserted = threads == 1 ? insert(cavity, VertexSlot(i), last, Everywhere{})
-                                         : insert(cavity, VertexSlot(i), last, territory);
-      if (!inserted) left.emplace_back(i);
+      if (threads == 1) {
+        insert(cavity, VertexSlot(i), last, Everywhere{});
+      } else if (!insert(cavity, VertexSlot(i), last, territory)) {
+        // The territory need not be convex: the walk may have left it. Near on the curve is a vertex of the first round.
+        last = VertexSlot(i - (i - 1) % kFirstStride);
+        if (!insert(cavity, VertexSlot(i), last, territory)) left.emplace_back(i);
+      }
       if (++done % kBetweenReports != 0) continue;
       if (thread == 0) inserted_ += kBetweenReports;
       if (!pause(thread == 0)) return false;
