@@ -6,13 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/core_commands.h"
+
 int main(int argc, char** argv) {
   static constexpr struct {
     const char* name;
     int (*run)(std::span<const std::string>);
   } kCommands[] = {
       {"paper", bench::run_paper},
-      {"star", bench::run_star},
+      {"star", bench::run_star},     {"build", bench::run_build},   {"insert", bench::run_insert},
+      {"locate", bench::run_locate}, {"remove", bench::run_remove},
   };
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {

@@ -1,91 +1,103 @@
 #include "tin/delaunay/start_grid.h"
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 
 namespace tin::delaunay {
 
 using exact::Point;
+using mesh::kInfinite;
+using mesh::kNone;
 using mesh::Mesh;
+using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
 namespace {
-constexpr std::size_t kVerticesPerCell = 4;
-constexpr std::uint32_t kSamples = 24;  // vertices looked at when a cell has no hint
 
-std::uint64_t squared_distance(Point a, Point b) {
-  const std::int64_t dx = std::int64_t{a.x} - b.x, dy = std::int64_t{a.y} - b.y;
-  return static_cast<std::uint64_t>(dx * dx) + static_cast<std::uint64_t>(dy * dy);
+constexpr double kVerticesPerCell = 1.5;           // finer is hardly quicker, and keeps no 72 bytes per vertex
+constexpr std::uint8_t kCrowd = 64;                // vertices in a cell from which on the hierarchy is the quicker way
+constexpr std::uint32_t kCrowded = kNone - 1;      // in a cell without a hint
+
+template <class F>
+void each_vertex(const Mesh& mesh, const F& f) {
+  for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
+    if (mesh.is_alive(VertexSlot(i))) f(VertexSlot(i));
+  }
 }
 
-std::uint64_t scramble(std::uint64_t x) {
-  x = (x ^ (x >> 31)) * 0x7fb5d329728ea185ULL;
-  x = (x ^ (x >> 27)) * 0x81dadef4bc2dd44dULL;
-  return x ^ (x >> 33);
-}
 }  // namespace
 
-bool StartGrid::usable(const Mesh& mesh, std::uint32_t slot) const { return slot != 0 && mesh.is_alive(VertexSlot(slot)); }
-
-std::size_t StartGrid::cell(Point p) const {
-  const auto clamp = [](std::int64_t offset, int shift, std::uint32_t count) {
-    return static_cast<std::size_t>(std::clamp<std::int64_t>(offset >> shift, 0, std::int64_t{count} - 1));
-  };
-  return clamp(std::int64_t{p.y} - low_.y, shift_y_, rows_) * columns_ + clamp(std::int64_t{p.x} - low_.x, shift_x_, columns_);
+void StartGrid::remember(const Mesh& mesh, Point p, TriangleSlot t) {
+  if (outdated(mesh)) rebuild(mesh);
+  if (hints_.empty()) return;
+  std::uint32_t& hint = hints_[cell(p)];
+  if (hint != kCrowded) hint = t.value();
 }
 
-void StartGrid::remember(const Mesh& mesh, VertexSlot v) {
-  if (mesh.vertex_count() > outgrown_at_) rebuild(mesh);
-  if (!hints_.empty()) hints_[cell(mesh.point(v))] = v.value();
+void StartGrid::give_up(Point p) {
+  if (!hints_.empty()) hints_[cell(p)] = kCrowded;
+}
+
+/// Lays square cells over the vertices' extent.
+void StartGrid::fit(const Mesh& mesh) {
+  Point low{exact::kLatticeHalf, exact::kLatticeHalf}, high{-exact::kLatticeHalf, -exact::kLatticeHalf};
+  each_vertex(mesh, [&](VertexSlot v) {
+    const Point p = mesh.point(v);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  });
+  const double width = double(high.x) - low.x + 1, height = double(high.y) - low.y + 1;
+  const double side = std::max(std::sqrt(width * height * kVerticesPerCell / double(mesh.vertex_count())), 1.0);
+  x_ = make_axis(low.x, high.x, side);
+  y_ = make_axis(low.y, high.y, side);
+  reach_ = static_cast<std::int64_t>(4 * side) + 1;
+}
+
+/// At most as many cells as whole sides fit, so that the product of both counts stays near the number of vertices.
+StartGrid::Axis StartGrid::make_axis(std::int64_t low, std::int64_t high, double side) {
+  Axis axis{low, high - low, 1, 0};
+  axis.count = static_cast<std::uint32_t>(std::max(1.0, double(axis.last + 1) / side));
+  // Rounded down, so that the last unit falls into the last cell. Fits: an axis has fewer than 2^31 units and cells.
+  axis.scale = (std::uint64_t{axis.count} << 32) / static_cast<std::uint64_t>(axis.last + 1);
+  return axis;
 }
 
 void StartGrid::rebuild(const Mesh& mesh) {
-  Point low{exact::kLatticeHalf, exact::kLatticeHalf}, high{-exact::kLatticeHalf, -exact::kLatticeHalf};
-  for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
-    if (!mesh.is_alive(VertexSlot(i))) continue;
-    const Point p = mesh.point(VertexSlot(i));
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  const std::uint64_t width = static_cast<std::uint64_t>(std::int64_t{high.x} - low.x) + 1;
-  const std::uint64_t height = static_cast<std::uint64_t>(std::int64_t{high.y} - low.y) + 1;
-  const std::size_t cells = std::max<std::size_t>(1, 2 * mesh.vertex_count() / kVerticesPerCell);
-  int shift = 0;
-  while (((width >> shift) + 1) * ((height >> shift) + 1) > cells) ++shift;
-  low_ = low;
-  shift_x_ = shift_y_ = shift;
-  columns_ = static_cast<std::uint32_t>(((width - 1) >> shift) + 1);
-  rows_ = static_cast<std::uint32_t>(((height - 1) >> shift) + 1);
-  outgrown_at_ = std::max<std::size_t>(64, 2 * mesh.vertex_count());
-  hints_.assign(std::size_t{columns_} * rows_, 0);
-  for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
-    if (mesh.is_alive(VertexSlot(i))) hints_[cell(mesh.point(VertexSlot(i)))] = i;
+  outgrown_at_ = std::max<std::size_t>(16, 2 * mesh.vertex_count());
+  too_large_at_ = mesh.vertex_count() / 4;
+  hints_.clear();
+  if (mesh.dimension() < 2) return;
+  fit(mesh);
+  hints_.assign(std::size_t{x_.count} * y_.count, kNone);
+  each_vertex(mesh, [&](VertexSlot v) { hints_[cell(mesh.point(v))] = mesh.triangle_at(v).value(); });
+  // Empty cells take over the hint before them: near enough where cells are empty by chance.
+  std::uint32_t last = kNone;
+  for (std::uint32_t& hint : hints_) last = hint = hint == kNone ? last : hint;
+  mark_crowded_cells(mesh);
+}
+
+void StartGrid::mark_crowded_cells(const Mesh& mesh) {
+  std::vector<std::uint8_t> count(hints_.size(), 0);
+  each_vertex(mesh, [&](VertexSlot v) {
+    const std::size_t c = cell(mesh.point(v));
+    if (count[c] < kCrowd) ++count[c];
+  });
+  for (std::size_t c = 0; c < count.size(); ++c) {
+    if (count[c] == kCrowd) hints_[c] = kCrowded;
   }
 }
 
-VertexSlot StartGrid::near(const Mesh& mesh, Point p) const {
-  std::uint32_t best = 0;
-  if (!hints_.empty()) {
-    const std::uint32_t hint = hints_[cell(p)];
-    // A slot used again elsewhere makes a stale hint; only one that is still near is worth following.
-    const std::uint64_t reach = std::uint64_t{2} << std::max(shift_x_, shift_y_);
-    if (usable(mesh, hint) && squared_distance(mesh.point(VertexSlot(hint)), p) <= reach * reach) return VertexSlot(hint);
-  }
-  std::uint64_t best_distance = ~std::uint64_t{0};
-  std::uint64_t state = static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32 | static_cast<std::uint32_t>(p.y);
-  const std::uint32_t slots = mesh.vertex_slots();
-  for (std::uint32_t tries = 0; tries < kSamples || best == 0; ++tries) {
-    state = scramble(state + tries + 1);
-    // After many misses go through the slots in order: an alive one exists.
-    const std::uint32_t slot = tries < 64 ? 1 + static_cast<std::uint32_t>(state % (slots - 1)) : 1 + (tries - 64) % (slots - 1);
-    if (!usable(mesh, slot)) continue;
-    const std::uint64_t distance = squared_distance(mesh.point(VertexSlot(slot)), p);
-    if (distance < best_distance) {
-      best = slot;
-      best_distance = distance;
-    }
-  }
-  return VertexSlot(best);
+TriangleSlot StartGrid::near(const Mesh& mesh, Point p) const {
+  const TriangleSlot none{kNone};
+  if (hints_.empty()) return none;
+  const TriangleSlot t{hints_[cell(p)]};
+  if (t.value() >= mesh.triangle_slots()) return none;
+  mesh.prefetch_around(t);
+  if (!mesh.is_alive(t)) return none;
+  const auto& vertices = mesh.triangle(t).vertices;
+  const Point q = mesh.point(vertices[0] == kInfinite ? vertices[1] : vertices[0]);
+  const std::int64_t dx = std::int64_t{p.x} - q.x, dy = std::int64_t{p.y} - q.y;
+  return std::max(dx, -dx) <= reach_ && std::max(dy, -dy) <= reach_ ? t : none;
 }
 
 }  // namespace tin::delaunay

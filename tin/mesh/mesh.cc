@@ -1,11 +1,13 @@
 #include "tin/mesh/mesh.h"
 
+#include <algorithm>
+
 namespace tin::mesh {
 
-Mesh::Mesh() : points_(1), star_{kNoTriangle} {}
+Mesh::Mesh() : points_(1, exact::Point{}), star_(1, kNoTriangle) {}
 
 int Mesh::dimension() const {
-  if (triangles_.size() > free_triangles_.size()) return 2;
+  if (triangle_count_ > 0) return 2;
   if (vertex_count_ == 0) return -1;
   return vertex_count_ == 1 ? 0 : 1;
 }
@@ -20,7 +22,7 @@ std::size_t Mesh::finite_triangle_count() const {
     ++hull;
     t = twin(t, next3(index_of(t, kInfinite))).triangle();
   } while (t != first);
-  return triangles_.size() - free_triangles_.size() - hull;
+  return triangle_count_ - hull;
 }
 
 bool Mesh::is_infinite(TriangleSlot t) const {
@@ -42,16 +44,19 @@ void Mesh::link(VertexSlot v, std::vector<HalfEdge>& out) const {
   TriangleSlot t = first;
   do {
     const int i = index_of(t, v);
-    out.emplace_back(t, i);
+    const HalfEdge edge(t, i);
+    // The walk around needs one triangle after the other; what its callers touch next can be fetched meanwhile.
+    prefetch(twin(edge).triangle());
+    prefetch(origin(edge));
+    out.push_back(edge);
     t = twin(t, next3(i)).triangle();
   } while (t != first);
 }
 
-VertexSlot Mesh::add_vertex(exact::Point p) {
+VertexSlot Mesh::add_vertex(exact::Point p, VertexSlot near) {
   ++vertex_count_;
   if (!free_vertices_.empty()) {
-    const std::uint32_t slot = free_vertices_.back();
-    free_vertices_.pop_back();
+    const std::uint32_t slot = free_vertices_.take_near(near.value());
     points_[slot] = p;
     star_[slot] = kNoTriangle;
     return VertexSlot(slot);
@@ -65,18 +70,18 @@ void Mesh::release_vertex(VertexSlot v) {
   TIN_DCHECK(v != kInfinite && is_alive(v));
   --vertex_count_;
   star_[v.value()] = kDead;
-  free_vertices_.push_back(v.value());
+  free_vertices_.add(v.value());
+}
+
+TriangleSlot Mesh::claim_triangle(TriangleSlot near) {
+  ++triangle_count_;
+  if (!free_triangles_.empty()) return TriangleSlot(free_triangles_.take_near(near.value()));
+  triangles_.emplace_back();
+  return TriangleSlot(static_cast<std::uint32_t>(triangles_.size() - 1));
 }
 
 TriangleSlot Mesh::add_triangle(VertexSlot a, VertexSlot b, VertexSlot c) {
-  TriangleSlot t;
-  if (free_triangles_.empty()) {
-    t = TriangleSlot(static_cast<std::uint32_t>(triangles_.size()));
-    triangles_.emplace_back();
-  } else {
-    t = TriangleSlot(free_triangles_.back());
-    free_triangles_.pop_back();
-  }
+  const TriangleSlot t = claim_triangle(TriangleSlot(0));
   set_triangle(t, a, b, c);
   return t;
 }
@@ -88,7 +93,8 @@ void Mesh::set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, VertexSlot c
 
 void Mesh::release_triangle(TriangleSlot t) {
   triangles_[t.value()].vertices[0] = VertexSlot(kNone);
-  free_triangles_.push_back(t.value());
+  free_triangles_.add(t.value());
+  --triangle_count_;
 }
 
 void Mesh::join(HalfEdge a, HalfEdge b) {
@@ -99,6 +105,7 @@ void Mesh::join(HalfEdge a, HalfEdge b) {
 void Mesh::clear_triangles() {
   triangles_.clear();
   free_triangles_.clear();
+  triangle_count_ = 0;
   for (auto& star : star_) {
     if (star != kDead) star = kNoTriangle;
   }
@@ -108,6 +115,31 @@ void Mesh::reserve(std::size_t vertices) {
   points_.reserve(vertices + 1);
   star_.reserve(vertices + 1);
   triangles_.reserve(2 * vertices);
+}
+
+void Mesh::begin_bulk(std::size_t count) {
+  TIN_DCHECK(vertex_count_ == 0 && triangle_count_ == 0);
+  free_vertices_.clear();
+  free_triangles_.clear();
+  points_.resize(count + 1);
+  star_.resize(count + 1);
+  triangles_.resize(2 * count);
+}
+
+void Mesh::end_bulk(std::span<const TriangleSlot> unused) {
+  vertex_count_ = points_.size() - 1;
+  triangle_count_ = triangles_.size();
+  if (unused.size() == triangles_.size()) {
+    std::fill(star_.begin(), star_.end(), kNoTriangle);
+    return clear_triangles();
+  }
+  for (const TriangleSlot t : unused) release_triangle(t);
+}
+
+std::size_t Mesh::bytes() const {
+  return points_.capacity() * sizeof(exact::Point) + star_.capacity() * sizeof(std::uint32_t) +
+         triangles_.capacity() * sizeof(Triangle) + free_vertices_.bytes() + free_triangles_.bytes() +
+         line_.capacity() * sizeof(VertexSlot);
 }
 
 }  // namespace tin::mesh

@@ -15,6 +15,8 @@
 #include "tin/base/check.h"
 #include "tin/base/strong_id.h"
 #include "tin/exact/point.h"
+#include "tin/mesh/page_allocator.h"
+#include "tin/mesh/slot_set.h"
 
 namespace tin::mesh {
 
@@ -50,6 +52,12 @@ struct Triangle {
   std::array<HalfEdge, 3> neighbours;
 };
 
+/// Where each slot went when the mesh was renumbered; kNone for slots that were free.
+struct Renumbering {
+  std::vector<VertexSlot> vertices;
+  std::vector<TriangleSlot> triangles;
+};
+
 class Mesh {
  public:
   Mesh();
@@ -59,6 +67,7 @@ class Mesh {
   /// -1 without vertices, 0 with one, 1 when all are collinear, else 2.
   int dimension() const;
   std::size_t vertex_count() const { return vertex_count_; }
+  std::size_t triangle_count() const { return triangle_count_; }  // with the infinite ones
   std::size_t finite_triangle_count() const;
   /// One past the largest slots in use: the arrays to iterate over, asking is_alive() of each.
   std::uint32_t vertex_slots() const { return static_cast<std::uint32_t>(points_.size()); }
@@ -89,36 +98,73 @@ class Mesh {
 
   // Writing: building blocks for delaunay/ and removal/, which keep the invariants --------------------------------
 
-  VertexSlot add_vertex(exact::Point p);
+  /// Uses a free slot again, the one nearest to `near`; without free slots the arrays grow.
+  VertexSlot add_vertex(exact::Point p, VertexSlot near = kInfinite);
   void release_vertex(VertexSlot v);
   TriangleSlot add_triangle(VertexSlot a, VertexSlot b, VertexSlot c);
   void set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, VertexSlot c);
+  /// A slot for a triangle that the caller writes at once.
+  TriangleSlot claim_triangle(TriangleSlot near);
+  /// Writes the triangle alone: neither its neighbours' links nor triangle_at() of its vertices.
+  void write_triangle(TriangleSlot t, const Triangle& content) { triangles_[t.value()] = content; }
   void release_triangle(TriangleSlot t);
   void join(HalfEdge a, HalfEdge b);
+  /// One direction of join().
+  void set_twin(HalfEdge e, HalfEdge twin) {
+    triangles_[e.triangle().value()].neighbours[static_cast<std::size_t>(e.index())] = twin;
+  }
   void set_triangle_at(VertexSlot v, TriangleSlot t) { star_[v.value()] = t.value(); }
   std::vector<VertexSlot>& mutable_line() { return line_; }
   void clear_triangles();
   void reserve(std::size_t vertices);
 
+  /// Bulk building of an empty mesh: makes vertices 1..count, whose points the caller then sets, and room for twice as many
+  /// triangles, which the caller writes with write_triangle(). Again with a smaller count, the first points stay.
+  void begin_bulk(std::size_t count);
+  void set_point(VertexSlot v, exact::Point p) { points_[v.value()] = p; }
+  /// All of the 2 * count triangles are written but those in `unused` (all of them when the vertices are collinear).
+  void end_bulk(std::span<const TriangleSlot> unused);
+
+  /// Stores the vertices in the given order, without gaps, and the triangles after them.
+  /// Requires: `order` holds each alive finite vertex once.
+  Renumbering renumber(std::span<const VertexSlot> order);
+
   // Memory -------------------------------------------------------------------------------------------------------
 
+  /// What the arrays occupy.
+  std::size_t bytes() const;
   void prefetch(VertexSlot v) const {
     __builtin_prefetch(&points_[v.value()]);
     __builtin_prefetch(&star_[v.value()]);
   }
+  void prefetch_point(VertexSlot v) const { __builtin_prefetch(&points_[v.value()]); }
   void prefetch(TriangleSlot t) const { __builtin_prefetch(&triangles_[t.value()]); }
+  /// What a walk from `t` likely touches, without a look at `t`: in a mesh stored along a curve, triangles are twice as far in
+  /// their array as their vertices are in theirs. Touches nothing, so that addresses beyond the arrays do no harm.
+  void prefetch_around(TriangleSlot t) const {
+    const auto triangle = reinterpret_cast<std::uintptr_t>(triangles_.data()) + t.value() * sizeof(Triangle);
+    const auto point = reinterpret_cast<std::uintptr_t>(points_.data()) + t.value() / 2 * sizeof(exact::Point);
+    for (const std::uintptr_t line : {std::uintptr_t{0} - kCacheLine, std::uintptr_t{0}, std::uintptr_t{kCacheLine}}) {
+      __builtin_prefetch(reinterpret_cast<const void*>(triangle + line));
+      __builtin_prefetch(reinterpret_cast<const void*>(point + line));
+    }
+  }
 
  private:
+  static constexpr std::uintptr_t kCacheLine = 64;
   static constexpr std::uint32_t kDead = kNone;
   static constexpr std::uint32_t kNoTriangle = kNone - 1;
 
-  std::vector<exact::Point> points_;
-  std::vector<std::uint32_t> star_;  // a triangle at each vertex; kDead in free slots
-  std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> free_vertices_;
-  std::vector<std::uint32_t> free_triangles_;
+  std::vector<TriangleSlot> renumber_triangles(const std::vector<VertexSlot>& new_of_old);
+
+  PageVector<exact::Point> points_;
+  PageVector<std::uint32_t> star_;  // a triangle at each vertex; kDead in free slots
+  PageVector<Triangle> triangles_;
+  SlotSet free_vertices_;
+  SlotSet free_triangles_;
   std::vector<VertexSlot> line_;
   std::size_t vertex_count_ = 0;
+  std::size_t triangle_count_ = 0;
 };
 
 }  // namespace tin::mesh

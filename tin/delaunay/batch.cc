@@ -1,0 +1,182 @@
+// Batches: building, insertion and removal of many vertices at a time, in the order that memory likes best.
+#include <algorithm>
+#include <array>
+
+#include "tin/delaunay/bulk.h"
+#include "tin/delaunay/hilbert_sort.h"
+#include "tin/delaunay/triangulation.h"
+
+namespace tin::delaunay {
+
+using exact::Point;
+using mesh::kNone;
+using mesh::Mesh;
+using mesh::TriangleSlot;
+using mesh::VertexSlot;
+
+namespace {
+
+constexpr std::size_t kBetweenReports = 4096;
+constexpr std::size_t kAhead = 4;    // how many operations ahead memory is asked for, per dependent load
+constexpr std::size_t kWorthAThread = 20000;  // points
+constexpr std::size_t kTogether = 16;  // stars fetched in turns
+
+/// Reports after each 4096th operation. False when it is time to stop.
+bool go_on(base::Progress* progress, std::size_t done, std::size_t all) {
+  if (progress == nullptr || done % kBetweenReports != 0) return true;
+  progress->report(static_cast<double>(done) / static_cast<double>(all));
+  return !progress->cancelled();
+}
+
+/// Brings the stars of the next few vertices to be removed into the caches. A star is walked from triangle to triangle, each
+/// a wait for memory; walking many in turns makes them wait together.
+class StarFetcher {
+ public:
+  explicit StarFetcher(const Mesh& mesh) : mesh_(mesh) {}
+
+  /// Fetches slots[i], slots[i + 1], .. and asks for the first triangles of those after them.
+  void fetch(std::span<const VertexSlot> slots, std::size_t i) {
+    if (mesh_.dimension() < 2) return;
+    const auto part = [&](std::size_t begin) { return slots.subspan(std::min(begin, slots.size())).first(
+        std::min(kTogether, slots.size() - std::min(begin, slots.size()))); };
+    for (const VertexSlot v : part(i + 2 * kTogether)) mesh_.prefetch(v);
+    for (const VertexSlot v : part(i + kTogether)) mesh_.prefetch(mesh_.triangle_at(v));
+    std::size_t active = 0;
+    for (const VertexSlot v : part(i)) around_[active++] = {v, mesh_.triangle_at(v)};
+    for (int round = 0; round < kRounds; ++round) {
+      for (std::size_t k = 0; k < active; ++k) step(around_[k]);
+    }
+  }
+
+ private:
+  static constexpr int kRounds = 6;  // triangles per star; most have about six
+  struct Around {
+    VertexSlot vertex;
+    TriangleSlot triangle;
+  };
+
+  void step(Around& at) const {
+    const int i = mesh_.index_of(at.triangle, at.vertex);
+    mesh_.prefetch(mesh_.twin(at.triangle, i).triangle());
+    mesh_.prefetch(mesh_.vertex(at.triangle, mesh::next3(i)));
+    at.triangle = mesh_.twin(at.triangle, mesh::next3(i)).triangle();
+    mesh_.prefetch(at.triangle);
+  }
+
+  const Mesh& mesh_;
+  std::array<Around, kTogether> around_;
+};
+
+}  // namespace
+
+bool Triangulation::insert_many(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
+                                unsigned threads) {
+  slots.assign(points.size(), VertexSlot(kNone));
+  const bool done = mesh().vertex_count() == 0 ? build(points, slots, progress, threads) : insert_more(points, slots, progress);
+  base_.forget_fresh();
+  return done;
+}
+
+bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
+                          unsigned threads) {
+  if (points.empty()) return true;
+  threads = static_cast<unsigned>(std::clamp<std::size_t>(points.size() / kWorthAThread, 1, std::max(threads, 1U)));
+  Mesh& mesh = base_.mutable_mesh();
+  mesh = Mesh();
+  {
+    const auto sorted = hilbert_sorted(points, threads);
+    mesh.begin_bulk(sorted.size());
+    std::uint32_t last = 0;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      if (i + 4 * kAhead < sorted.size()) __builtin_prefetch(&points[sorted[i + 4 * kAhead].index]);
+      const Point p = points[sorted[i].index];
+      if (last == 0 || p != mesh.point(VertexSlot(last))) mesh.set_point(VertexSlot(++last), p);
+      slots[sorted[i].index] = VertexSlot(last);
+    }
+    mesh.begin_bulk(last);
+  }
+  if (!build_bulk(mesh, threads, progress)) return false;
+  grid_.rebuild(mesh);
+  hierarchy_.build(mesh);
+  return true;
+}
+
+/// Along the Hilbert curve, each walk from the grid's hint or from the last vertex, whichever should be nearer.
+bool Triangulation::insert_more(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress) {
+  const auto sorted = hilbert_sorted(points);
+  const std::size_t count = sorted.size();
+  std::size_t done = 0;
+  VertexSlot last{kNone};
+  // A batch that dwarfs the mesh goes in rounds, as in bulk building.
+  for (const std::size_t stride : {std::size_t{64}, std::size_t{8}, std::size_t{1}}) {
+    if (stride > 1 && count < mesh().vertex_count() * stride / 8) continue;
+    for (std::size_t i = 0; i < count; i += stride) {
+      const std::uint32_t index = sorted[i].index;
+      if (slots[index].value() != kNone) continue;
+      const bool is_coherent = last.value() != kNone && count / stride * 16 > mesh().vertex_count();
+      if (!is_coherent) fetch_for_insertion(points, sorted, i);
+      last = slots[index] = (is_coherent ? insert_near(points[index], last) : insert(points[index])).vertex;
+      if (!go_on(progress, ++done, count)) return false;
+    }
+  }
+  return true;
+}
+
+/// Asks for what the insertions after the i-th will touch: a cell of the grid, then its triangle, then what is around that.
+void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span<const OnCurve> order, std::size_t i) const {
+  if (i + 3 * kAhead < order.size()) grid_.prefetch_cell(points[order[i + 3 * kAhead].index]);
+  if (i + 2 * kAhead < order.size()) {
+    const TriangleSlot t = grid_.hint(points[order[i + 2 * kAhead].index]);
+    if (t.value() < mesh().triangle_slots()) mesh().prefetch(t);
+  }
+  if (i + kAhead < order.size()) {
+    const TriangleSlot t = grid_.hint(points[order[i + kAhead].index]);
+    if (t.value() >= mesh().triangle_slots() || !mesh().is_alive(t)) return;
+    for (int k = 0; k < 3; ++k) {
+      mesh().prefetch_point(mesh().vertex(t, k));
+      mesh().prefetch(mesh().twin(t, k).triangle());
+    }
+  }
+}
+
+bool Triangulation::remove_many(std::span<const VertexSlot> slots, base::Progress* progress) {
+  std::vector<Point> points;
+  points.reserve(slots.size());
+  for (const VertexSlot v : slots) points.push_back(mesh().point(v));
+  std::vector<VertexSlot> order;
+  order.reserve(slots.size());
+  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(slots[item.index]);
+  return remove_in_order(order, progress);
+}
+
+bool Triangulation::remove_in_order(std::span<const VertexSlot> slots, base::Progress* progress) {
+  StarFetcher fetcher(mesh());
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (i % kTogether == 0) fetcher.fetch(slots, i);
+    remove(slots[i]);
+    if (!go_on(progress, i + 1, slots.size())) return false;
+  }
+  base_.forget_fresh();
+  return true;
+}
+
+mesh::Renumbering Triangulation::compact() {
+  std::vector<Point> points;
+  std::vector<VertexSlot> alive, order;
+  points.reserve(mesh().vertex_count());
+  alive.reserve(mesh().vertex_count());
+  for (std::uint32_t i = 1; i < mesh().vertex_slots(); ++i) {
+    if (!mesh().is_alive(VertexSlot(i))) continue;
+    alive.emplace_back(i);
+    points.push_back(mesh().point(VertexSlot(i)));
+  }
+  order.reserve(alive.size());
+  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(alive[item.index]);
+  mesh::Renumbering moved = base_.mutable_mesh().renumber(order);
+  hierarchy_.renumber(moved.vertices);
+  grid_.rebuild(mesh());
+  base_.forget_fresh();
+  return moved;
+}
+
+}  // namespace tin::delaunay

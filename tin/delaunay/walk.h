@@ -1,0 +1,115 @@
+// The visibility walk: from triangle to triangle, always over an edge that has the goal beyond it.
+//
+// It ends: the perturbed Delaunay triangulation is the lower hull of lifted points in general position, and with each
+// crossing the height at which the vertical line over the goal meets the triangle's lifted plane grows. So no triangle
+// comes twice, whatever the start.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "tin/exact/point.h"
+#include "tin/mesh/mesh.h"
+
+namespace tin::delaunay {
+
+/// A vertex as seen from the goal of the walk. The infinite vertex stands anywhere: its numbers are never looked at.
+struct Corner {
+  std::int64_t x, y;
+  mesh::VertexSlot vertex;
+};
+
+inline std::int64_t cross(const Corner& a, const Corner& b) { return a.x * b.y - a.y * b.x; }
+
+inline Corner corner_at(const mesh::Mesh& mesh, mesh::VertexSlot v, exact::Point goal) {
+  const exact::Point q = mesh.point(v);
+  return {std::int64_t{q.x} - goal.x, std::int64_t{q.y} - goal.y, v};
+}
+
+/// Where a walk came to rest: in the triangle c, b, a (counter-clockwise), with c at its index `apex`, seen from the goal.
+/// The crosses are orientations of the edges c -> b, b -> a and a -> c with the goal.
+struct Stop {
+  enum class Kind {
+    kInside,    // the goal is in the closed finite triangle: no cross is negative
+    kOutside,   // the triangle is infinite, c is the infinite vertex, and the goal lies strictly beyond the hull edge
+    kGaveUp,    // the limit of steps was reached, or the walk came to a place where it may not go
+  };
+  Kind kind;
+  mesh::TriangleSlot triangle;
+  int apex;
+  Corner a, b, c;
+  std::int64_t cb, ba, ac;
+  std::uint32_t steps;  // edges crossed
+};
+
+/// The whole mesh is there to be read and changed.
+struct Everywhere {
+  static constexpr bool owns(mesh::VertexSlot) { return true; }
+};
+
+/// The vertices [begin, end) and the triangles that have all their vertices there: what one of several threads that
+/// build together may change. (The others may be looked at, but not crossed between foreign vertices: parallel.h.)
+struct Territory {
+  std::uint32_t begin, end;
+  bool owns(mesh::VertexSlot v) const { return v.value() - begin < end - begin; }
+};
+
+inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
+
+/// Walks to `goal` from the finite triangle `start`. Const and safe beside other readers.
+template <class Owner>
+Stop walk(const mesh::Mesh& mesh, exact::Point goal, mesh::TriangleSlot start, const Owner& owner,
+          std::uint32_t limit = kNoLimit) {
+  using mesh::next3;
+  using mesh::prev3;
+  const auto& first = mesh.triangle(start).vertices;
+  Stop s{Stop::Kind::kInside, start, 0, corner_at(mesh, first[2], goal), corner_at(mesh, first[1], goal),
+         corner_at(mesh, first[0], goal), 0, 0, 0, 0};
+  int crossed = -1;
+  s.ba = cross(s.b, s.a);
+  if (s.ba < 0) {
+    crossed = 0;
+    std::swap(s.a, s.b);
+  }
+  for (;;) {
+    if (crossed < 0) {
+      s.cb = cross(s.c, s.b);
+      if (s.cb < 0) {
+        crossed = prev3(s.apex);
+        s.ba = s.cb;
+        s.a = s.c;
+      } else {
+        s.ac = cross(s.a, s.c);
+        if (s.ac >= 0) return s;
+        crossed = next3(s.apex);
+        s.ba = s.ac;
+        s.b = s.c;
+      }
+    }
+    // Over the edge a -> b (as seen from here), which the goal lies beyond: in the next triangle it is b -> a.
+    if (s.steps == limit || (!owner.owns(s.a.vertex) && !owner.owns(s.b.vertex))) {
+      s.kind = Stop::Kind::kGaveUp;
+      return s;
+    }
+    const mesh::HalfEdge beyond = mesh.twin(s.triangle, crossed);
+    s.triangle = beyond.triangle();
+    s.apex = beyond.index();
+    s.ba = -s.ba;
+    ++s.steps;
+    const mesh::VertexSlot apex = mesh.vertex(s.triangle, s.apex);
+    s.c = corner_at(mesh, apex, goal);
+    if (apex == mesh::kInfinite) {
+      s.kind = Stop::Kind::kOutside;
+      return s;
+    }
+    crossed = -1;
+  }
+}
+
+/// A finite triangle to start from: `t` itself, or the one across its hull edge.
+inline mesh::TriangleSlot finite_start(const mesh::Mesh& mesh, mesh::TriangleSlot t) {
+  if (!mesh.is_infinite(t)) return t;
+  return mesh.twin(t, mesh.index_of(t, mesh::kInfinite)).triangle();
+}
+
+}  // namespace tin::delaunay
