@@ -25,19 +25,6 @@ std::size_t Mesh::finite_triangle_count() const {
   return triangle_count_ - hull;
 }
 
-bool Mesh::is_infinite(TriangleSlot t) const {
-  const auto& v = triangle(t).vertices;
-  return v[0] == kInfinite || v[1] == kInfinite || v[2] == kInfinite;
-}
-
-int Mesh::index_of(TriangleSlot t, VertexSlot v) const {
-  const auto& vertices = triangle(t).vertices;
-  if (vertices[0] == v) return 0;
-  if (vertices[1] == v) return 1;
-  TIN_DCHECK(vertices[2] == v);
-  return 2;
-}
-
 void Mesh::link(VertexSlot v, std::vector<HalfEdge>& out) const {
   out.clear();
   const TriangleSlot first = triangle_at(v);
@@ -86,20 +73,10 @@ TriangleSlot Mesh::add_triangle(VertexSlot a, VertexSlot b, VertexSlot c) {
   return t;
 }
 
-void Mesh::set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, VertexSlot c) {
-  triangles_[t.value()].vertices = {a, b, c};
-  star_[a.value()] = star_[b.value()] = star_[c.value()] = t.value();
-}
-
 void Mesh::release_triangle(TriangleSlot t) {
   triangles_[t.value()].vertices[0] = VertexSlot(kNone);
   free_triangles_.add(t.value());
   --triangle_count_;
-}
-
-void Mesh::join(HalfEdge a, HalfEdge b) {
-  triangles_[a.triangle().value()].neighbours[static_cast<std::size_t>(a.index())] = b;
-  triangles_[b.triangle().value()].neighbours[static_cast<std::size_t>(b.index())] = a;
 }
 
 void Mesh::clear_triangles() {

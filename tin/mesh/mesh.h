@@ -167,4 +167,29 @@ class Mesh {
   std::size_t triangle_count_ = 0;
 };
 
+// Here, since every step around a vertex needs them.
+
+inline bool Mesh::is_infinite(TriangleSlot t) const {
+  const auto& v = triangle(t).vertices;
+  return v[0] == kInfinite || v[1] == kInfinite || v[2] == kInfinite;
+}
+
+inline int Mesh::index_of(TriangleSlot t, VertexSlot v) const {
+  const auto& vertices = triangle(t).vertices;
+  if (vertices[0] == v) return 0;
+  if (vertices[1] == v) return 1;
+  TIN_DCHECK(vertices[2] == v);
+  return 2;
+}
+
+inline void Mesh::set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, VertexSlot c) {
+  triangles_[t.value()].vertices = {a, b, c};
+  star_[a.value()] = star_[b.value()] = star_[c.value()] = t.value();
+}
+
+inline void Mesh::join(HalfEdge a, HalfEdge b) {
+  triangles_[a.triangle().value()].neighbours[static_cast<std::size_t>(a.index())] = b;
+  triangles_[b.triangle().value()].neighbours[static_cast<std::size_t>(b.index())] = a;
+}
+
 }  // namespace tin::mesh
