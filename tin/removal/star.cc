@@ -8,19 +8,6 @@ using mesh::Mesh;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
-namespace {
-
-/// Where meshes are stored along a curve, with twice as many triangles as vertices, about half of the star's triangles lie
-/// near 2 v. It costs nothing to fetch these lines while the true place is being looked up, and it need not be right.
-void prefetch_guess(const Mesh& mesh, VertexSlot v) {
-  constexpr std::uint32_t kLine = 64 / sizeof(mesh::Triangle) + 1;
-  const std::uint32_t middle = 2 * v.value() - 1;
-  if (middle < kLine || middle + kLine >= mesh.triangle_slots()) return;
-  for (const std::uint32_t slot : {middle - kLine, middle, middle + kLine}) mesh.prefetch(TriangleSlot(slot));
-}
-
-}  // namespace
-
 void Star::gather(const Mesh& mesh, VertexSlot v) {
   walk_around(mesh, v);
   removed_ = v;
@@ -50,7 +37,7 @@ void Star::walk_around(const Mesh& mesh, VertexSlot v) {
     mesh.prefetch(mesh.origin(e));
     mesh.prefetch(mesh.twin(e).triangle());
   };
-  prefetch_guess(mesh, v);
+  mesh.prefetch_around(TriangleSlot(2 * v.value()));
   const TriangleSlot first = mesh.triangle_at(v);
   HalfEdge ahead(first, mesh.index_of(first, v)), behind = ahead;
   meet(link_, ahead);
