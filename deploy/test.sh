@@ -32,6 +32,8 @@ done
 build "$preset" ON
 
 export TINSMITH_SAMPLES=$ROOT/build/sample
+# A run can be repeated; another seed looks at other random input.
+export TINSMITH_SEED=${TINSMITH_SEED:-20021128}
 if [ -z "${TINSMITH_TERRAIN:-}" ] && [ -d "$ROOT/../shared/terrain" ]; then
   TINSMITH_TERRAIN=$(cd "$ROOT/../shared/terrain" && pwd)
   export TINSMITH_TERRAIN

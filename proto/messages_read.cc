@@ -344,12 +344,36 @@ Result<ElevationRequest> read_elevation_request(std::string_view body, std::size
   return request;
 }
 
+namespace {
+
+/// One of the words, where the member is there.
+Result<void> check_word(const Object& object, std::string_view name, std::initializer_list<std::string_view> words) {
+  const auto member = object.find(name);
+  if (!member) return {};
+  const auto text = member->string(64);
+  if (!text) return text.error();
+  if (std::find(words.begin(), words.end(), *text) != words.end()) return {};
+  return member->error(Code::kInvalidValue, "this is no word that is known here");
+}
+
+/// What OGC API Processes has beside the inputs changes nothing, but is what it should be.
+Result<void> check_unheeded_members(const Object& object) {
+  if (const auto outputs = object.find("outputs")) {
+    if (const auto fine = outputs->any_object(); !fine) return fine.error();
+  }
+  if (auto fine = check_word(object, "response", {"raw", "document"}); !fine) return fine;
+  return check_word(object, "mode", {"sync", "async", "auto"});
+}
+
+}  // namespace
+
 Result<SimplifyRequest> read_simplify_request(std::string_view body) {
   auto document = Document::parse(body);
   if (!document) return std::move(document).error();
   // Members of OGC API Processes beside the inputs are taken and change nothing: there is one kind of answer.
   auto object = document->root().object({"inputs", "outputs", "response", "mode"});
   if (!object) return std::move(object).error();
+  if (auto unheeded = check_unheeded_members(*object); !unheeded) return std::move(unheeded).error();
   auto member = object->require("inputs");
   if (!member) return std::move(member).error();
   auto inputs = member->object({"tin", "tolerance", "maxVertices", "as", "effort"});
