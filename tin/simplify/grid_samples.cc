@@ -40,6 +40,15 @@ std::pair<std::int32_t, std::int32_t> widened(double from, double to, std::int32
           static_cast<std::int32_t>(std::clamp(high, -1.0, static_cast<double>(count) - 1))};
 }
 
+/// The cells whose centres `origin + i * step` lie in low..high: the first and the last.
+std::pair<std::int32_t, std::int32_t> inside(std::int64_t low, std::int64_t high, std::int64_t origin, std::int64_t step,
+                                             std::int32_t count) {
+  if (step < 0) return inside(-high, -low, -origin, -step, count);
+  const auto floor_div = [step](std::int64_t a) { return a / step - (a % step < 0 ? 1 : 0); };
+  return {static_cast<std::int32_t>(std::clamp<std::int64_t>(-floor_div(origin - low), 0, count)),
+          static_cast<std::int32_t>(std::clamp<std::int64_t>(floor_div(high - origin), -1, count - 1))};
+}
+
 }  // namespace
 
 GridSamples::GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
@@ -89,9 +98,42 @@ Site GridSamples::site(SampleIndex sample) const {
   return {grid_.centre(column, row), column, row, height(sample).value(), sample};
 }
 
-SampleIndex GridSamples::find(Point p) const {
-  if (const auto cell = grid_.cell_centred_at(p)) return index(cell->column, cell->row);
-  return others_.find(p);
+Point GridSamples::position(SampleIndex sample) const {
+  if (sample >= cell_count()) return others_.position(sample);
+  const auto width = static_cast<SampleIndex>(grid_.width);
+  return grid_.centre(static_cast<std::int32_t>(sample % width), static_cast<std::int32_t>(sample / width));
+}
+
+std::optional<SampleIndex> GridSamples::find(Point p) const {
+  const auto cell = grid_.cell_centred_at(p);
+  if (!cell) return others_.find(p);
+  const SampleIndex found = index(cell->column, cell->row);
+  return exists(found) ? std::optional(found) : std::nullopt;
+}
+
+Extent GridSamples::extent() const {
+  const Point first = grid_.centre(0, 0), last = grid_.centre(grid_.width - 1, grid_.height - 1);
+  Extent out{{{std::min(first.x, last.x), std::min(first.y, last.y)}, {std::max(first.x, last.x), std::max(first.y, last.y)}},
+             std::abs(grid_.dx), std::abs(grid_.dy), cell_count()};
+  if (others_.empty()) return out;
+  const terrain::Box box = others_.extent().box;
+  out.box.min = {std::min(out.box.min.x, box.min.x), std::min(out.box.min.y, box.min.y)};
+  out.box.max = {std::max(out.box.max.x, box.max.x), std::max(out.box.max.y, box.max.y)};
+  return out;
+}
+
+/// The first and the last sample of each row.
+void GridSamples::outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const {
+  const auto [first_column, last_column] = inside(box.min.x, box.max.x, grid_.x0, grid_.dx, grid_.width);
+  const auto [first_row, last_row] = inside(box.min.y, box.max.y, grid_.y0, grid_.dy, grid_.height);
+  for (std::int32_t row = first_row; row <= last_row; ++row) {
+    std::int32_t first = first_column, last = last_column;
+    while (first <= last && !height(index(first, row))) ++first;
+    while (first < last && !height(index(last, row))) --last;
+    if (first <= last) out.push_back(index(first, row));
+    if (first < last) out.push_back(index(last, row));
+  }
+  others_.outermost(box, out);
 }
 
 // Whole heights
@@ -116,13 +158,14 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
                      cy = c.row - a.row;
   const std::int64_t turn = bx * cy - by * cx;
   const std::int64_t sign = turn < 0 ? -1 : 1, area = sign * turn;
+  if (area == 1) return {};  // no other sample lies in it
   const std::int64_t base = whole(a.z), rise_b = sign * (whole(b.z) - base),
                      rise_c = sign * (whole(c.z) - base);
   // Over cell (x, y), counted from a: area * (interpolated - z) = area * (base - z) + x * slope_x + y *
   // slope_y.
   const std::int64_t slope_x = rise_b * cy - rise_c * by, slope_y = rise_c * bx - rise_b * cx;
-  const exact::Int128 exact_limit = floor_product(tolerance, shift_, area);
-  const std::int64_t limit = exact_limit > INT64_MAX ? INT64_MAX : static_cast<std::int64_t>(exact_limit);
+  const double rounded_limit = tolerance * scale_ * static_cast<double>(area), surely_over = rounded_limit * (1 + 0x1p-40) + 1;
+  const std::int64_t stop = depth == Depth::kWorst || surely_over >= 0x1p+62 ? INT64_MAX : static_cast<std::int64_t>(surely_over);
   std::int64_t worst = 0;
   SampleIndex at = 0;
   visit_spans(cell_of(a), cell_of(b), cell_of(c),
@@ -138,9 +181,13 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
                   worst = distance;
                   at = start + static_cast<SampleIndex>(i);
                 }
-                return !(depth == Depth::kFirstOver && worst > limit) && !cancelled();
+                return worst <= stop && !cancelled(row);
               });
-  return {static_cast<double>(worst) / (static_cast<double>(area) * scale_), at, worst > limit};
+  const auto rounded = static_cast<double>(worst);
+  // Rounding is far from the limit for nearly all; else the whole numbers decide.
+  const bool doubtful = std::abs(rounded - rounded_limit) <= 0x1p-48 * rounded_limit;
+  const bool over = doubtful ? worst > floor_product(tolerance, shift_, area) : rounded > rounded_limit;
+  return {rounded / (static_cast<double>(area) * scale_), at, over};
 }
 
 std::optional<double> WholeGridSamples::height(SampleIndex cell) const {
@@ -183,7 +230,7 @@ Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, do
                   worst = distance;
                   at = start + static_cast<SampleIndex>(i);
                 }
-                return !(depth == Depth::kFirstOver && worst - limit > slack) && !cancelled();
+                return !(depth == Depth::kFirstOver && worst - limit > slack) && !cancelled(row);
               });
   if (worst - limit > slack) return {worst / area, at, true};
   if (worst - limit > -slack) return judge_all(a, b, c, tolerance);
@@ -203,7 +250,7 @@ Scan RealGridSamples::judge_all(const Site& a, const Site& b, const Site& c, dou
                   const auto verdict = facet.judge(*weights, z, tolerance);
                   keep_worse(found, {verdict.error, index(column, row), !verdict.within});
                 }
-                return !cancelled();
+                return !cancelled(row);
               });
   return found;
 }

@@ -23,7 +23,14 @@ class GridSamples : public Samples {
  public:
   Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
   Site site(SampleIndex sample) const override;
-  SampleIndex find(exact::Point p) const override;
+  exact::Point position(SampleIndex sample) const override;
+  std::optional<SampleIndex> find(exact::Point p) const override;
+  SampleIndex end() const override { return others_.end(); }
+  bool exists(SampleIndex sample) const override {
+    return sample < cell_count() ? height(sample).has_value() : others_.exists(sample);
+  }
+  Extent extent() const override;
+  void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 
  protected:
   GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
@@ -42,6 +49,8 @@ class GridSamples : public Samples {
     return static_cast<SampleIndex>(row) * static_cast<SampleIndex>(grid_.width) +
            static_cast<SampleIndex>(column);
   }
+  /// Asked once in many rows.
+  bool cancelled(std::int32_t row) const { return row % 64 == 0 && cancelled(); }
   bool cancelled() const { return progress_ != nullptr && progress_->cancelled(); }
   const terrain::SourceGrid& grid() const { return grid_; }
 

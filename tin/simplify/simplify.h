@@ -7,6 +7,7 @@
 //   auto chosen = simplify_samples(source, {.tolerance = 5.0}, &progress);   // no terrain needed: the straight import
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -53,15 +54,19 @@ struct Worst {
   std::optional<std::size_t> source_index;
 };
 
+/// Of a report's histogram.
+inline constexpr std::size_t kBins = 16;
+
 struct Report {
   std::size_t vertices_before = 0, vertices_after = 0;
   std::size_t samples = 0;     // what was certified
   double max_error = 0;        // vertical unit, over all samples; never above a tolerance that is met
   std::optional<Worst> worst;  // nothing when every sample lies on the result (max_error is 0)
   double rmse = 0;             // vertical unit, over all samples
-  /// How many samples have an error in [i, i + 1) sixteenths of the largest (the last bin holds the largest itself;
-  /// all are in the first when that is 0).
-  std::vector<std::size_t> histogram;
+  /// How many samples have an error in [i, i + 1) times `bin`; the last bin also holds all above. `bin` is a sixteenth of the
+  /// tolerance when that is met, else of the largest error that the search itself saw.
+  std::array<std::size_t, kBins> histogram{};
+  double bin = 0;
   /// Every sample is within the tolerance. True when none was asked for; false only when max_vertices got in
   /// its way.
   bool tolerance_met = true;
