@@ -111,6 +111,16 @@ std::optional<SampleIndex> GridSamples::find(Point p) const {
   return exists(found) ? std::optional(found) : std::nullopt;
 }
 
+std::optional<SampleIndex> GridSamples::neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const {
+  if (sample >= cell_count()) return std::nullopt;
+  const auto width = static_cast<SampleIndex>(grid_.width);
+  const std::int32_t column = static_cast<std::int32_t>(sample % width) + columns,
+                     row = static_cast<std::int32_t>(sample / width) + rows;
+  if (column < 0 || row < 0 || column >= grid_.width || row >= grid_.height) return std::nullopt;
+  const SampleIndex found = index(column, row);
+  return height(found) ? std::optional(found) : std::nullopt;
+}
+
 Extent GridSamples::extent() const {
   const Point first = grid_.centre(0, 0), last = grid_.centre(grid_.width - 1, grid_.height - 1);
   Extent out{{{std::min(first.x, last.x), std::min(first.y, last.y)}, {std::max(first.x, last.x), std::max(first.y, last.y)}},

@@ -29,6 +29,7 @@ class GridSamples : public Samples {
   bool exists(SampleIndex sample) const override {
     return sample < cell_count() ? height(sample).has_value() : others_.exists(sample);
   }
+  std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const override;
   Extent extent() const override;
   void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 

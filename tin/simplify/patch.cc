@@ -43,8 +43,10 @@ void Patch::put(VertexSlot v, const Site& site) {
   flags_[v.value()] = 0;
 }
 
-std::optional<VertexSlot> Patch::insert(const Site& site, TriangleSlot holder) {
-  const auto stop = delaunay::walk(mesh_, site.at, holder, delaunay::Everywhere{});
+std::optional<VertexSlot> Patch::insert(const Site& site, TriangleSlot near) {
+  const auto stop = delaunay::walk(mesh_, site.at, near, delaunay::Everywhere{});
+  VertexSlot there;
+  if (delaunay::at_vertex(stop, there) || stop.kind != delaunay::Stop::Kind::kInside) return std::nullopt;
   if (!cavity_.carve(mesh_, site.at, stop, owner_)) return std::nullopt;
   const VertexSlot v = mesh_.add_vertex(site.at, stop.b.vertex);
   const TriangleSlot extra = mesh_.claim_triangle(cavity_.some_triangle());

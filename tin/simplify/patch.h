@@ -47,9 +47,9 @@ class Patch {
   std::uint32_t first_owned() const { return owner_.first; }
   std::size_t owned_count() const { return mesh_.vertex_count() - (owner_.first - 1); }
 
-  /// Makes the sample at `site`, which lies in the closed finite triangle `holder`, a vertex. Nothing, and no change, when that
-  /// would touch triangles that are not the patch's own. Requires: no vertex stands there.
-  std::optional<mesh::VertexSlot> insert(const Site& site, mesh::TriangleSlot holder);
+  /// Makes the sample at `site` a vertex; `near` is a finite triangle to look for it from. Nothing, and no change, when a vertex
+  /// stands there, when it is outside the hull, or when triangles would be touched that are not the patch's own.
+  std::optional<mesh::VertexSlot> insert(const Site& site, mesh::TriangleSlot near);
   /// Whether the patch may remove the alive vertex: it is not fixed, and its star is the patch's own.
   bool is_removable(mesh::VertexSlot v) const;
   /// False, and no change, when only collinear vertices would be left. Requires: is_removable(v).

@@ -22,6 +22,7 @@ class PointSamples final : public Samples {
   std::optional<SampleIndex> find(exact::Point p) const override;
   SampleIndex end() const override { return first_ + static_cast<SampleIndex>(samples_.size()); }
   bool exists(SampleIndex sample) const override { return sample >= first_ && sample < end(); }
+  std::optional<SampleIndex> neighbour(SampleIndex, std::int32_t, std::int32_t) const override { return std::nullopt; }
   Extent extent() const override;
   void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 

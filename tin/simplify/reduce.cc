@@ -3,6 +3,11 @@
 #include "tin/simplify/fast.h"
 #include "tin/simplify/greedy.h"
 #include "tin/simplify/decimate.h"
+#include "tin/simplify/search.h"
+#include "tin/simplify/tiles.h"
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
 
 namespace tin::simplify {
 
@@ -10,6 +15,19 @@ std::optional<Reduced> reduce(const Samples& samples, std::span<const SampleInde
                               const Phase& phase) {
   auto pins = reach_tolerance(samples, corners, *options.tolerance, options.threads, phase);
   if (!pins) return std::nullopt;
+  if (options.effort != Effort::kFast) {
+    const int per = getenv("PER") ? atoi(getenv("PER")) : 8, rounds = getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 4;
+    Random random(options.seed);
+    for (int r = 0; r < rounds; ++r) {
+      const Tiling tiling = Tiling::of_about(samples.extent(), pins->size() / 4096 + 1, random.fraction(), random.fraction());
+      const std::uint64_t seed = random.next();
+      work_in_patches(samples, *pins, tiling, options.threads, phase, [&](Patch& patch, std::size_t tile) {
+        Search(patch, *options.tolerance, Random(seed + tile).next()).run(per * patch.owned_count(), [&] { return phase.cancelled(); });
+      });
+      fprintf(stderr, "round %d: %zu cpu %.2f\n", r, pins->size(), double(clock()) / CLOCKS_PER_SEC);
+    }
+    repair(samples, *pins, *options.tolerance, options.threads, phase);
+  }
   return Reduced{std::move(*pins), true, *options.tolerance};
 }
 

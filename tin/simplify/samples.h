@@ -64,6 +64,9 @@ class Samples {
   virtual SampleIndex end() const = 0;
   virtual bool exists(SampleIndex sample) const = 0;
 
+  /// The sample so many columns and rows from one on a raster; nothing where there is none.
+  virtual std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const = 0;
+
   virtual Extent extent() const = 0;
   /// Appends samples of the closed box, among them all corners of their convex hull.
   virtual void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const = 0;
