@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "tin/base/check.h"
 #include "tin/delaunay/walk.h"
@@ -19,6 +20,7 @@ namespace {
 
 /// Samples that one thread measures at a time; the sums of squares are put together in this order.
 constexpr SampleIndex kStretch = 1U << 16;
+constexpr SampleIndex kTogether = 1U << 10;
 
 struct Measured {
   std::size_t samples = 0, on_vertices = 0;
@@ -39,8 +41,10 @@ class Certifier {
 
   Measured measure(SampleIndex begin, SampleIndex end) {
     Measured out;
-    for (SampleIndex sample = begin; sample < end; ++sample) {
-      if (result_.samples().exists(sample)) look_up(result_.samples().site(sample), out);
+    for (; begin < end; begin += std::min(end - begin, kTogether)) {
+      sites_.clear();
+      result_.samples().sites(begin, begin + std::min(end - begin, kTogether), sites_);
+      for (const Site& site : sites_) look_up(site, out);
     }
     return out;
   }
@@ -85,6 +89,7 @@ class Certifier {
   double tolerance_, bin_;
   TriangleSlot at_;  // of the sample before: the next is often near
   Facet facet_;      // over it
+  std::vector<Site> sites_;
 };
 
 void put_together(Certificate& sum, const Measured& part, double& squares, std::size_t& on_vertices) {

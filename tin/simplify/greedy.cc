@@ -9,8 +9,8 @@ namespace tin::simplify {
 
 using mesh::TriangleSlot;
 
-Greedy::End Greedy::run(std::size_t budget, const Phase& phase) {
-  if (!queue_all(phase)) return End::kCancelled;
+Greedy::End Greedy::run(std::size_t budget, const Phase& phase, const std::function<bool(TriangleSlot)>& suspect) {
+  if (!queue_all(phase, suspect)) return End::kCancelled;
   double progress = 0;
   for (;;) {
     const auto worst = take_worst();
@@ -31,11 +31,12 @@ Greedy::End Greedy::run(std::size_t budget, const Phase& phase) {
   }
 }
 
-bool Greedy::queue_all(const Phase& phase) {
+bool Greedy::queue_all(const Phase& phase, const std::function<bool(TriangleSlot)>& suspect) {
   const std::uint32_t slots = patch_.mesh().triangle_slots();
   wanted_.assign(slots, kNoSample);
   for (std::uint32_t i = 0; i < slots; ++i) {
     if (phase.cancelled()) return false;
+    if (suspect && !suspect(TriangleSlot(i))) continue;
     if (patch_.owns(TriangleSlot(i))) queue(TriangleSlot(i));
   }
   return true;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -22,8 +23,9 @@ class Greedy {
   Greedy(Patch& patch, double target) : patch_(patch), target_(target) {}
 
   /// Inserts until every sample over the patch's own triangles is within the target (exactly), but for those that
-  /// could not become vertices without touching foreign triangles; or until `budget` vertices stand.
-  End run(std::size_t budget, const Phase& phase);
+  /// could not become vertices without touching foreign triangles; or until `budget` vertices stand. With `suspect`, only the
+  /// triangles that it says true of are asked at first, the others being known to be within.
+  End run(std::size_t budget, const Phase& phase, const std::function<bool(mesh::TriangleSlot)>& suspect = {});
 
   /// After kBudgetSpent: removes again what came after the state of the least largest error, since that error
   /// does not fall steadily. Returns it, rounded.
@@ -41,7 +43,7 @@ class Greedy {
   };
   static constexpr SampleIndex kNoSample = std::numeric_limits<SampleIndex>::max();
 
-  bool queue_all(const Phase& phase);
+  bool queue_all(const Phase& phase, const std::function<bool(mesh::TriangleSlot)>& suspect);
   void queue(mesh::TriangleSlot t);
   std::optional<Candidate> take_worst();
   void note_state(double error);

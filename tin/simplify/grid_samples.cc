@@ -8,6 +8,7 @@
 
 #include "tin/simplify/ranking.h"
 #include "tin/simplify/spans.h"
+#include "tin/simplify/whole_scan.h"
 
 namespace tin::simplify {
 
@@ -98,6 +99,20 @@ Site GridSamples::site(SampleIndex sample) const {
   return {grid_.centre(column, row), column, row, height(sample).value(), sample};
 }
 
+void GridSamples::sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const {
+  const auto width = static_cast<SampleIndex>(grid_.width);
+  const SampleIndex cells = std::min(end, static_cast<SampleIndex>(cell_count()));
+  auto column = static_cast<std::int32_t>(begin % width), row = static_cast<std::int32_t>(begin / width);
+  for (SampleIndex sample = begin; sample < cells; ++sample) {
+    const double z = height_or_nan(sample);
+    if (!std::isnan(z)) out.push_back({grid_.centre(column, row), column, row, z, sample});
+    if (++column < grid_.width) continue;
+    column = 0;
+    ++row;
+  }
+  for (SampleIndex sample = std::max(begin, cells); sample < end; ++sample) out.push_back(others_.site(sample));
+}
+
 Point GridSamples::position(SampleIndex sample) const {
   if (sample >= cell_count()) return others_.position(sample);
   const auto width = static_cast<SampleIndex>(grid_.width);
@@ -155,12 +170,13 @@ bool WholeGridSamples::can_hold(const terrain::SourceGrid& grid, int shift, doub
   return shift <= kMostShift && height < kMostHeight && cells < 0x1p+29 && 8 * height * cells < 0x1p+61;
 }
 
-WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift,
+WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest,
                                    std::vector<Facet::Corner> others, const base::Progress* progress)
     : GridSamples(grid, std::move(others), progress),
       shift_(shift),
       scale_(std::ldexp(1.0, shift)),
-      heights_(cell_count(), kVoid) {}
+      largest_(std::ldexp(largest, shift)),
+      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid) {}
 
 Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                   Depth depth) const {
@@ -174,34 +190,22 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
   // Over cell (x, y), counted from a: area * (interpolated - z) = area * (base - z) + x * slope_x + y *
   // slope_y.
   const std::int64_t slope_x = rise_b * cy - rise_c * by, slope_y = rise_c * bx - rise_b * cx;
-  const double rounded_limit = tolerance * scale_ * static_cast<double>(area), surely_over = rounded_limit * (1 + 0x1p-40) + 1;
-  const std::int64_t stop = depth == Depth::kWorst || surely_over >= 0x1p+62 ? INT64_MAX : static_cast<std::int64_t>(surely_over);
-  std::int64_t worst = 0;
-  SampleIndex at = 0;
-  visit_spans(cell_of(a), cell_of(b), cell_of(c),
-              [&](std::int32_t row, std::int32_t first, std::int32_t last) {
-                const SampleIndex start = index(first, row);
-                const std::int32_t* const z = heights_.data() + start;
-                std::int64_t plane = area * base + (first - a.column) * slope_x + (row - a.row) * slope_y;
-                const std::int32_t count = last - first + 1;
-                for (std::int32_t i = 0; i < count; ++i, plane += slope_x) {
-                  const std::int64_t difference = plane - area * z[i];
-                  const std::int64_t distance = difference < 0 ? -difference : difference;
-                  if (distance <= worst || z[i] == kVoid) continue;
-                  worst = distance;
-                  at = start + static_cast<SampleIndex>(i);
-                }
-                return worst <= stop && !cancelled(row);
-              });
-  const auto rounded = static_cast<double>(worst);
+  const double limit = tolerance * scale_ * static_cast<double>(area), surely_over = limit * (1 + 0x1p-40) + 1;
+  const bool to_end = depth == Depth::kWorst || surely_over >= 0x1p+62;
+  const WholePlane plane{cell_of(a), cell_of(b), cell_of(c), area, area * base, slope_x, slope_y};
+  const std::int64_t stop = to_end ? INT64_MAX : static_cast<std::int64_t>(surely_over);
+  const WholeHeights heights{heights_.data(), grid().width};
+  const WorstCell worst =
+      doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);
+  const auto distance = static_cast<double>(worst.distance);
   // Rounding is far from the limit for nearly all; else the whole numbers decide.
-  const bool doubtful = std::abs(rounded - rounded_limit) <= 0x1p-48 * rounded_limit;
-  const bool over = doubtful ? worst > floor_product(tolerance, shift_, area) : rounded > rounded_limit;
-  return {rounded / (static_cast<double>(area) * scale_), at, over};
+  const bool doubtful = std::abs(distance - limit) <= 0x1p-48 * limit;
+  const bool over = doubtful ? worst.distance > floor_product(tolerance, shift_, area) : distance > limit;
+  return {distance / (static_cast<double>(area) * scale_), worst.at, over};
 }
 
-std::optional<double> WholeGridSamples::height(SampleIndex cell) const {
-  if (heights_[cell] == kVoid) return std::nullopt;
+double WholeGridSamples::height_or_nan(SampleIndex cell) const {
+  if (heights_[cell] == WholeHeights::kVoid) return std::numeric_limits<double>::quiet_NaN();
   return heights_[cell] / scale_;
 }
 
@@ -265,8 +269,7 @@ Scan RealGridSamples::judge_all(const Site& a, const Site& b, const Site& c, dou
   return found;
 }
 
-std::optional<double> RealGridSamples::height(SampleIndex cell) const {
-  if (std::isnan(heights_[cell])) return std::nullopt;
+double RealGridSamples::height_or_nan(SampleIndex cell) const {
   return heights_[cell];
 }
 

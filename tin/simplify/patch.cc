@@ -55,7 +55,7 @@ std::optional<VertexSlot> Patch::insert(const Site& site, TriangleSlot near) {
   fresh_.assign(cavity_.star().begin(), cavity_.star().end());
   for (const TriangleSlot t : fresh_) {
     const auto& corners = mesh_.triangle(t).vertices;
-    flags_[corners[1].value()] &= static_cast<std::uint8_t>(~kSettled);
+    unsettle(corners[1]);
   }
   return v;
 }
@@ -76,7 +76,7 @@ bool Patch::is_removable(VertexSlot v) const {
 bool Patch::remove(VertexSlot v) {
   if (!remover_.remove(mesh_, v, fresh_)) return false;
   for (const TriangleSlot t : fresh_) {
-    for (const VertexSlot corner : mesh_.triangle(t).vertices) flags_[corner.value()] &= static_cast<std::uint8_t>(~kSettled);
+    for (const VertexSlot corner : mesh_.triangle(t).vertices) unsettle(corner);
   }
   return true;
 }

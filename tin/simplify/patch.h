@@ -43,6 +43,7 @@ class Patch {
   bool is_fixed(mesh::VertexSlot v) const { return (flags_[v.value()] & kFixed) != 0; }
   bool is_settled(mesh::VertexSlot v) const { return (flags_[v.value()] & kSettled) != 0; }
   void settle(mesh::VertexSlot v) { flags_[v.value()] |= kSettled; }
+  void unsettle(mesh::VertexSlot v) { flags_[v.value()] &= static_cast<std::uint8_t>(~kSettled); }
   /// Owned vertices have slots from here on.
   std::uint32_t first_owned() const { return owner_.first; }
   std::size_t owned_count() const { return mesh_.vertex_count() - (owner_.first - 1); }

@@ -1,9 +1,9 @@
 // The way from samples to few vertices: the order of the steps.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "tin/simplify/patch.h"
 #include "tin/simplify/phase.h"
@@ -12,7 +12,7 @@
 namespace tin::simplify {
 
 struct Reduced {
-  std::vector<Pin> pins;
+  std::unique_ptr<Patch> tin;
   bool to_tolerance = false;  // every sample is within the tolerance asked for
   double error = 0;           // otherwise: about the largest one
 };

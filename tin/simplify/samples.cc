@@ -128,6 +128,12 @@ std::unique_ptr<Samples> filled(std::unique_ptr<Grid> grid, const Input& input, 
 
 }  // namespace
 
+void Samples::sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const {
+  for (SampleIndex sample = begin; sample < end; ++sample) {
+    if (exists(sample)) out.push_back(site(sample));
+  }
+}
+
 std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box& box) {
   std::vector<SampleIndex> found;
   samples.outermost(box, found);
@@ -163,7 +169,7 @@ std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSample
   if (grid != nullptr && is_worth_scanning(*grid, *found)) {
     auto others = found->others == 0 ? std::vector<Facet::Corner>() : all_points(input, grid, found->others);
     if (WholeGridSamples::can_hold(*grid, found->shift, found->largest)) {
-      return filled(std::make_unique<WholeGridSamples>(*grid, found->shift, std::move(others), progress), input, progress);
+      return filled(std::make_unique<WholeGridSamples>(*grid, found->shift, found->largest, std::move(others), progress), input, progress);
     }
     if (RealGridSamples::can_hold(found->largest)) {
       return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), progress), input, progress);

@@ -56,6 +56,8 @@ class Samples {
   virtual Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const = 0;
 
   virtual Site site(SampleIndex sample) const = 0;
+  /// Appends the sites of the samples from `begin` to before `end`.
+  virtual void sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const;
   virtual exact::Point position(SampleIndex sample) const = 0;
   /// The sample at `p`, if there is one.
   virtual std::optional<SampleIndex> find(exact::Point p) const = 0;

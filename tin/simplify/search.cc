@@ -1,6 +1,8 @@
 #include "tin/simplify/search.h"
 
 #include "tin/base/check.h"
+#include <cstdio>
+#include <cstdlib>
 
 namespace tin::simplify {
 
@@ -9,6 +11,9 @@ using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
 namespace {
+struct Count { long tried[3]{}, ok[3][3]{}; ~Count(){ fprintf(stderr,"1: %ld ->0 %ld ->1 %ld ; 2: %ld ->0 %ld ->1 %ld ->2 %ld\n",tried[1],ok[1][0],ok[1][1],tried[2],ok[2][0],ok[2][1],ok[2][2]); } } g_count;
+int env(const char*n,int d){ const char*v=getenv(n); return v?atoi(v):d; }
+const int kPair=env("PAIR",60), kNear=env("NEAR",50), kR=env("R",1), env_same=env("SAME",1);
 constexpr std::size_t kBetweenQuestions = 64;  // tries between two looks at whether to stop
 }
 
@@ -27,10 +32,11 @@ void Search::attempt() {
   if (!patch_.mesh().is_alive(v) || !patch_.is_removable(v)) return;
   changes_.clear();
   bad_.clear();
-  const VertexSlot other = random_.below(100) < 60 ? some_neighbour(v) : kInfinite;
+  const VertexSlot other = (int)random_.below(100) < kPair ? some_neighbour(v) : kInfinite;
   if (!take_out(v)) return;
   if (other != kInfinite && patch_.is_removable(other) && !take_out(other)) return roll_back();
-  if (!recreate(changes_.size())) roll_back();
+  const auto n = changes_.size(); ++g_count.tried[n];
+  if (!recreate(n)) roll_back(); else ++g_count.ok[n][changes_.size()-n];
 }
 
 VertexSlot Search::some_neighbour(VertexSlot v) {
@@ -62,12 +68,18 @@ bool Search::is_outdated(const Bad& bad) const {
   return stamps_[bad.triangle.value()] != bad.stamp || !patch_.mesh().is_alive(bad.triangle);
 }
 
+bool Search::is_removed(SampleIndex s) const {
+  for (const Change& c : changes_) if (!c.inserted && c.site.sample == s) return true;
+  return false;
+}
+
 /// Makes a sample near the worst one a vertex, or that itself.
 bool Search::put_in(const Bad& bad) {
   const Samples& samples = patch_.samples();
   Site site = samples.site(bad.sample);
-  if (random_.below(2) == 0) {
-    const auto offset = [this] { return static_cast<std::int32_t>(random_.below(5)) - 2; };
+  const bool same = env_same && is_removed(bad.sample);
+  if (same || (int)random_.below(100) < kNear) {
+    const auto offset = [this] { return static_cast<std::int32_t>(random_.below(2*kR+1)) - kR; };
     const auto near = samples.neighbour(bad.sample, offset(), offset());
     if (near) site = samples.site(*near);
   }

@@ -55,6 +55,7 @@ class Search {
   mesh::VertexSlot some_neighbour(mesh::VertexSlot v);
   bool recreate(std::size_t removed);
   bool is_outdated(const Bad& bad) const;
+  bool is_removed(SampleIndex s) const;
   bool put_in(const Bad& bad);
   bool note_bad(Depth depth);
   void roll_back();

@@ -77,11 +77,12 @@ Result<Choice> choose(const Samples& samples, const SourceSamples* source, const
   if (!reduced) return error(Code::kCancelled, "Cancelled.");
   const double asked = options.tolerance.value_or(std::numeric_limits<double>::max());
   const double bin = (reduced->to_tolerance ? asked : reduced->error) / kBins;
-  const Patch result(samples, {}, reduced->pins, options.threads);
-  const auto certificate = certify(result, asked, bin, options.threads, whole.part(0.9, 1));
+  const auto certificate = certify(*reduced->tin, asked, bin, options.threads, whole.part(0.9, 1));
   if (!certificate) return error(Code::kCancelled, "Cancelled.");
   TIN_CHECK(certificate->within || !reduced->to_tolerance);
-  Choice out{std::move(reduced->pins), {}};
+  Choice out;
+  reduced->tin->collect(out.pins);
+  reduced->tin.reset();
   std::sort(out.pins.begin(), out.pins.end(), [](const Pin& a, const Pin& b) { return a.sample < b.sample; });
   out.report = {0,     out.pins.size(), certificate->samples, certificate->max_error, worst_of(samples, source, *certificate),
                 certificate->rmse, certificate->histogram, bin, certificate->within};

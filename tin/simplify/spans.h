@@ -33,16 +33,19 @@ class Side {
   std::int32_t y_;
 };
 
+/// Sorts the corners of a triangle by row; whether the one in the middle lies on the side of greater x.
+inline bool sort_by_row(GridPoint& a, GridPoint& b, GridPoint& c) {
+  if (b.y < a.y) std::swap(a, b);
+  if (c.y < b.y) std::swap(b, c);
+  if (b.y < a.y) std::swap(a, b);
+  return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) > (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
+}
+
 /// Calls visit(row, first, last) for each row of cells in the closed triangle, from the least row on, columns
 /// first..last (not empty); stops when it returns false. Requires: not collinear; coordinates below kMostCells.
 template <class Visit>
 void visit_spans(GridPoint a, GridPoint b, GridPoint c, const Visit& visit) {
-  if (b.y < a.y) std::swap(a, b);
-  if (c.y < b.y) std::swap(b, c);
-  if (b.y < a.y) std::swap(a, b);
-  const std::int64_t turn = (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
-                            (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
-  const bool bend_is_right = turn > 0;  // b lies on the side of greater x
+  const bool bend_is_right = sort_by_row(a, b, c);
   const Side through(a, c);
   const auto rows = [&](const Side& side, std::int32_t from, std::int32_t to) {
     const Side& left = bend_is_right ? through : side;

@@ -60,6 +60,11 @@ std::size_t Tiling::tile_of(Point p) const {
   return interval(ys_, p.y) * (xs_.size() - 1) + interval(xs_, p.x);
 }
 
+bool Tiling::is_inside(std::size_t tile, Point p) const {
+  const std::size_t columns = xs_.size() - 1, column = tile % columns, row = tile / columns;
+  return p.x > xs_[column] && p.x < xs_[column + 1] && p.y > ys_[row] && p.y < ys_[row + 1];
+}
+
 bool for_each_tile(std::size_t count, unsigned threads, const Phase& phase, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
   std::mutex reporting;
@@ -81,8 +86,7 @@ struct Division {
   std::vector<std::vector<Pin>> owned, frozen;
 };
 
-Division divide(const Samples& samples, const std::vector<Pin>& pins, const Tiling& tiling, unsigned threads) {
-  const Patch whole(samples, {}, pins, threads);
+Division divide(const Patch& whole, const Tiling& tiling) {
   const mesh::Mesh& mesh = whole.mesh();
   Division out{std::vector<std::vector<Pin>>(tiling.size()), std::vector<std::vector<Pin>>(tiling.size())};
   std::vector<std::uint32_t> tile_of(mesh.vertex_slots());
@@ -91,6 +95,7 @@ Division divide(const Samples& samples, const std::vector<Pin>& pins, const Tili
   };
   for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
     const VertexSlot v(i);
+    if (!mesh.is_alive(v)) continue;
     tile_of[i] = static_cast<std::uint32_t>(tiling.tile_of(mesh.point(v)));
     out.owned[tile_of[i]].push_back(pin(v));
   }
@@ -114,10 +119,16 @@ Division divide(const Samples& samples, const std::vector<Pin>& pins, const Tili
 
 }  // namespace
 
-bool work_in_patches(const Samples& samples, std::vector<Pin>& pins, const Tiling& tiling, unsigned threads, const Phase& phase,
+std::size_t patch_count(std::size_t vertices) {
+  constexpr std::size_t kVerticesPerPatch = 4096;
+  return vertices / kVerticesPerPatch;
+}
+
+bool work_in_patches(std::unique_ptr<Patch>& tin, const Tiling& tiling, unsigned threads, const Phase& phase,
                      const std::function<void(Patch&, std::size_t tile)>& work) {
-  Division division = divide(samples, pins, tiling, threads);
-  pins.clear();
+  const Samples& samples = tin->samples();
+  Division division = divide(*tin, tiling);
+  tin.reset();
   const bool finished = for_each_tile(tiling.size(), threads, phase, [&](std::size_t tile) {
     Patch patch(samples, division.frozen[tile], division.owned[tile]);
     std::vector<Pin>().swap(division.frozen[tile]);
@@ -125,8 +136,14 @@ bool work_in_patches(const Samples& samples, std::vector<Pin>& pins, const Tilin
     division.owned[tile].clear();
     patch.collect(division.owned[tile]);
   });
-  for (const auto& left : division.owned) pins.insert(pins.end(), left.begin(), left.end());
-  return finished;
+  if (!finished) return false;
+  std::vector<Pin> pins;
+  for (auto& left : division.owned) {
+    pins.insert(pins.end(), left.begin(), left.end());
+    std::vector<Pin>().swap(left);
+  }
+  tin = std::make_unique<Patch>(samples, std::span<const Pin>(), pins, threads);
+  return true;
 }
 
 }  // namespace tin::simplify

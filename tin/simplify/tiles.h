@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "tin/simplify/patch.h"
@@ -25,6 +26,8 @@ class Tiling {
   terrain::Box box(std::size_t tile) const;
   /// The tile that holds `p`; a line belongs to the tile after it.
   std::size_t tile_of(exact::Point p) const;
+  /// Whether `p` lies in the tile's open box.
+  bool is_inside(std::size_t tile, exact::Point p) const;
 
  private:
   std::vector<std::int64_t> xs_, ys_;  // ascending
@@ -33,9 +36,12 @@ class Tiling {
 /// Calls work(tile) once for each of 0..count-1, on up to `threads` threads, and reports what is done. False when cancelled.
 bool for_each_tile(std::size_t count, unsigned threads, const Phase& phase, const std::function<void(std::size_t)>& work);
 
-/// Cuts the TIN of `pins` into patches by `tiling`, calls work(patch, tile) for each, several at once, and puts together
-/// what they left. False, and `pins` in disorder, when cancelled.
-bool work_in_patches(const Samples& samples, std::vector<Pin>& pins, const Tiling& tiling, unsigned threads, const Phase& phase,
+/// How many patches a TIN of so many vertices is best cut into.
+std::size_t patch_count(std::size_t vertices);
+
+/// Cuts the TIN into patches by `tiling`, calls work(patch, tile) for each, several at once, and puts together what they left.
+/// False when cancelled; then `tin` is null. Requires: tin owns all its vertices.
+bool work_in_patches(std::unique_ptr<Patch>& tin, const Tiling& tiling, unsigned threads, const Phase& phase,
                      const std::function<void(Patch&, std::size_t tile)>& work);
 
 }  // namespace tin::simplify
