@@ -48,6 +48,7 @@ Result<app::SimplifyRequest> read_request(const Context& context, const Request&
   }
   app::SimplifyRequest wanted{*tin, {}, message->as};
   wanted.options.tolerance = message->tolerance;
+  wanted.options.effort = tin::simplify::Effort::kFast;
   if (message->max_vertices) wanted.options.max_vertices = static_cast<std::size_t>(*message->max_vertices);
   return wanted;
 }

@@ -14,7 +14,7 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   }
   const Version seen = request.tin->version();
   progress.begin_phase(0, 0.95);
-  auto outcome = tin::simplify::simplify(*seen.terrain, request.options, &progress);
+  auto outcome = tin::simplify::simplify(*seen.terrain, nullptr, {}, request.options, &progress);
   if (!outcome) return outcome.error();
   progress.begin_phase(0.95, 1);
   Simplified result{outcome->report, request.tin, 1, 0};

@@ -143,7 +143,7 @@ class Reduction {
     const double left = static_cast<double>(rounds - round - 1) / rounds;
     const double wanted = static_cast<double>(budget) * (1 + 0.1 * left);
     const double factor = std::pow(static_cast<double>(vertices) / wanted, 1 / kGrowth);
-    return std::min(target * std::clamp(factor, 0.8, 1.1), best);
+    return std::min(target * std::clamp(factor, 0.92, 1.05), best);
   }
 
   const Samples& samples_;

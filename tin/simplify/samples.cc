@@ -15,6 +15,7 @@ namespace tin::simplify {
 
 using mesh::VertexSlot;
 using exact::Point;
+using terrain::Placement;
 using terrain::SourceGrid;
 using terrain::SourceSamples;
 using terrain::Terrain;
@@ -36,18 +37,19 @@ int fraction_bits(double z) {
   return std::max(0, 53 - exponent - std::countr_zero(static_cast<std::uint64_t>(mantissa)));
 }
 
-/// What samples are made of: all of a source, then vertices that take the place of its samples or stand beside them.
+/// What samples are made of: all of a source, people's own, then the vertices where neither has one.
 class Input {
  public:
-  Input(const Terrain* terrain, const SourceSamples* source) : terrain_(terrain), source_(source) {
-    if (source_ == nullptr || terrain_ == nullptr) return;
-    visit_vertices(nullptr, [this](Point p, double z) {
-      const auto sample = source_->find(p);
-      if (sample && source_->z(*sample) == z) return;
-      edits_.push_back({p, z});
-      if (sample) replaced_.push_back(*sample);
+  Input(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own)
+      : terrain_(terrain), source_(source), others_(own.begin(), own.end()) {
+    const auto is_own = [own](Point p) {
+      const auto at = std::lower_bound(own.begin(), own.end(), p, [](const Placement& a, Point b) { return a.at < b; });
+      return at != own.end() && at->at == p;
+    };
+    if (terrain_ == nullptr || are_vertices()) return;
+    visit_vertices(nullptr, [&](Point p, double z) {
+      if (!(source_ != nullptr && source_->find(p)) && !is_own(p)) others_.push_back({p, z});
     });
-    std::sort(replaced_.begin(), replaced_.end());
   }
 
   const SourceGrid* grid() const {
@@ -58,22 +60,22 @@ class Input {
   /// Calls visit(position, height) for each sample; false when cancelled.
   template <class Visit>
   bool visit(const base::Progress* progress, const Visit& visit) const {
-    if (source_ == nullptr) return visit_vertices(progress, visit);
-    auto skip = replaced_.begin();
-    for (std::size_t i = 0; i < source_->size(); ++i) {
+    if (are_vertices()) return visit_vertices(progress, visit);
+    for (std::size_t i = 0; source_ != nullptr && i < source_->size(); ++i) {
       if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
-      if (!source_->is_sample(i)) continue;
-      if (skip != replaced_.end() && *skip == i) {
-        ++skip;
-      } else {
-        visit(source_->at(i), source_->z(i));
-      }
+      if (source_->is_sample(i)) visit(source_->at(i), source_->z(i));
     }
-    for (const terrain::Placement& edit : edits_) visit(edit.at, edit.z);
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+      if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
+      visit(others_[i].at, others_[i].z);
+    }
     return progress == nullptr || !progress->cancelled();
   }
 
  private:
+  /// Nothing but the vertices: they need not be copied.
+  bool are_vertices() const { return source_ == nullptr && others_.empty(); }
+
   template <class Visit>
   bool visit_vertices(const base::Progress* progress, const Visit& visit) const {
     const mesh::Mesh& mesh = terrain_->mesh();
@@ -86,8 +88,7 @@ class Input {
 
   const Terrain* terrain_;
   const SourceSamples* source_;
-  std::vector<terrain::Placement> edits_;
-  std::vector<std::size_t> replaced_;  // samples of the source; ascending
+  std::vector<Placement> others_;
 };
 
 std::optional<Survey> survey(const Input& input, const base::Progress* progress) {
@@ -161,8 +162,9 @@ std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box
   return out;
 }
 
-std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source, base::Progress* progress) {
-  const Input input(terrain, source);
+std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source,
+                                      std::span<const Placement> own, base::Progress* progress) {
+  const Input input(terrain, source, own);
   const auto found = survey(input, progress);
   if (!found) return nullptr;
   const SourceGrid* const grid = input.grid();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tin/base/progress.h"
@@ -77,10 +78,10 @@ class Samples {
 /// The corners of the convex hull of the samples in the closed box; fewer than three when they are all in a line.
 std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box& box);
 
-/// The vertices of `terrain`; with a `source`, its samples, but where a vertex is no sample of the source by position
-/// and height, that vertex instead. Either may be null, not both. On the raster where most of them are, else as scattered points.
-/// Nothing when cancelled. Borrows all.
+/// The samples of `source`, those that are people's `own`, and the vertices of `terrain` where neither has a sample. `terrain` or
+/// `source` may be null, not both. On the raster where most of them are, else as scattered points. Nothing when cancelled.
+/// Borrows all. Requires: as simplify().
 std::unique_ptr<Samples> make_samples(const terrain::Terrain* terrain, const terrain::SourceSamples* source,
-                                      base::Progress* progress);
+                                      std::span<const terrain::Placement> own, base::Progress* progress);
 
 }  // namespace tin::simplify

@@ -1,8 +1,6 @@
 #include "tin/simplify/search.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 
 #include "tin/base/check.h"
 #include "tin/delaunay/walk.h"
@@ -14,11 +12,14 @@ using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
 namespace {
-struct Count { long tried[3]{}, ok[3][3]{}, fol{}, folok{}, wit{},full{},fullfail{}; ~Count(){ fprintf(stderr,"1: %ld ->0 %ld ->1 %ld ; 2: %ld ->0 %ld ->1 %ld ->2 %ld follow %ld ok %ld witness %ld full %ld fail %ld\n",tried[1],ok[1][0],ok[1][1],tried[2],ok[2][0],ok[2][1],ok[2][2],fol,folok,wit,full,fullfail); } } g_count;
-int env(const char*n,int d){ const char*v=getenv(n); return v?atoi(v):d; }
-const int kPair=env("PAIR",60), kNear=env("NEAR",50), kR=env("R",1), kFollow=env("FOLLOW",1), kWit=env("WIT",1);
+
+// All three were found by experiment, on mountains and plains alike.
+constexpr std::uint32_t kPairs = 30;    // percent of the tries that take out two vertices
+constexpr std::uint32_t kBeside = 50;   // percent of the insertions beside the worst sample, not there
+constexpr std::uint32_t kReach = 1;     // how many cells beside
 constexpr std::size_t kBetweenQuestions = 64;  // tries between two looks at whether to stop
-}
+
+}  // namespace
 
 void Search::run(std::size_t tries, const std::function<bool()>& stop) {
   if (patch_.mesh().dimension() < 2) return;
@@ -37,31 +38,14 @@ void Search::attempt() {
   bad_.clear();
   witnesses_.clear();
   hole_.clear();
-  const VertexSlot other = (int)random_.below(100) < kPair ? some_neighbour(v) : kInfinite;
+  const VertexSlot other = random_.below(100) < kPairs ? some_neighbour(v) : kInfinite;
   if (!take_out(v)) return;
   if (other != kInfinite && patch_.is_removable(other) && !take_out(other)) return roll_back();
   look_into_hole();
-  const std::size_t removed = changes_.size();
-  ++g_count.tried[removed];
-  if (!recreate(removed)) return roll_back();
-  ++g_count.ok[removed][changes_.size()-removed];
-  if (kFollow) follow_up();
-}
-
-void Search::follow_up() {
-  neighbours_.clear();
-  for (const Change& change : changes_) {
-    if (!change.inserted) continue;
-    patch_.mesh().link(change.vertex, link_);
-    for (const mesh::HalfEdge e : link_) neighbours_.push_back(patch_.mesh().origin(e));
-  }
-  std::sort(neighbours_.begin(), neighbours_.end());
-  neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
-  for (const VertexSlot v : neighbours_) {
-    if (v == kInfinite || !patch_.mesh().is_alive(v) || !patch_.is_removable(v)) continue;
-    ++g_count.fol;
-    if (!trial_.cost_of_removing(patch_, v, tolerance_)) continue;
-    g_count.folok += patch_.remove(v);
+  if (recreate(changes_.size())) {
+    remove_around();
+  } else {
+    roll_back();
   }
 }
 
@@ -97,31 +81,37 @@ bool Search::recreate(std::size_t removed) {
     if (inserted == removed) return false;
     if (!put_in(bad_[random_.below(static_cast<std::uint32_t>(bad_.size()))])) return false;
     grow_stamps();
-    const bool last = inserted + 1 == removed;
     for (const TriangleSlot t : patch_.fresh()) ++stamps_[t.value()];
-    if (last) {
-      for (const Bad& bad : bad_) if (stamps_[bad.triangle.value()] == bad.stamp) return false;
-      if (kWit && a_witness_is_over()) { ++g_count.wit; return false; }
-      ++g_count.full;
-    }
-    for (const TriangleSlot t : patch_.fresh()) {
-      if (look_at(t, last ? Depth::kFirstOver : Depth::kWorst) && last) { ++g_count.fullfail; return false; }
-    }
+    if (!(inserted + 1 == removed ? is_mended() : look_at_fresh())) return false;
   }
 }
 
-bool Search::is_removed(SampleIndex sample) const {
-  return std::any_of(changes_.begin(), changes_.end(), [sample](const Change& change) { return !change.inserted && change.site.sample == sample; });
+/// After the last insertion: whether all is within the tolerance now. What is likely to be over is asked first.
+bool Search::is_mended() {
+  const auto is_left = [this](const Bad& bad) { return stamps_[bad.triangle.value()] == bad.stamp; };
+  if (std::any_of(bad_.begin(), bad_.end(), is_left) || a_witness_is_over()) return false;
+  const auto fresh = patch_.fresh();
+  return std::none_of(fresh.begin(), fresh.end(), [this](TriangleSlot t) { return look_at(t, Depth::kFirstOver); });
 }
 
-/// Makes a sample near the worst one a vertex, or that itself.
+bool Search::look_at_fresh() {
+  for (const TriangleSlot t : patch_.fresh()) look_at(t, Depth::kWorst);
+  return true;
+}
+
+/// Makes a sample near the worst one a vertex, or that itself: never what was just taken out, if that can be had.
 bool Search::put_in(const Bad& bad) {
   const Samples& samples = patch_.samples();
   Site site = samples.site(bad.sample);
-  if (is_removed(bad.sample) || (int)random_.below(100) < kNear) {
-    const auto offset = [this] { return static_cast<std::int32_t>(random_.below(2*kR+1)) - kR; };
-    const auto near = samples.neighbour(bad.sample, offset(), offset());
-    if (near) site = samples.site(*near);
+  const bool was_vertex = std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+    return !change.inserted && change.site.sample == bad.sample;
+  });
+  if (was_vertex || random_.below(100) < kBeside) {
+    const auto offset = [this] {
+      return static_cast<std::int32_t>(random_.below(2 * kReach + 1)) - static_cast<std::int32_t>(kReach);
+    };
+    const std::int32_t columns = offset(), rows = offset();
+    if (const auto beside = samples.neighbour(bad.sample, columns, rows)) site = samples.site(*beside);
   }
   const auto v = patch_.insert(site, bad.triangle);
   if (!v) return false;
@@ -157,6 +147,22 @@ bool Search::look_at(TriangleSlot t, Depth depth) {
   bad_.push_back({t, stamps_[t.value()], scan.sample});
   witnesses_.push_back(patch_.samples().site(scan.sample));
   return true;
+}
+
+/// A change may have made vertices around it superfluous.
+void Search::remove_around() {
+  neighbours_.clear();
+  for (const Change& change : changes_) {
+    if (!change.inserted) continue;
+    patch_.mesh().link(change.vertex, link_);
+    for (const mesh::HalfEdge e : link_) neighbours_.push_back(patch_.mesh().origin(e));
+  }
+  std::sort(neighbours_.begin(), neighbours_.end());
+  neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
+  for (const VertexSlot v : neighbours_) {
+    if (v == kInfinite || !patch_.is_removable(v)) continue;
+    if (trial_.cost_of_removing(patch_, v, tolerance_)) patch_.remove(v);
+  }
 }
 
 /// The TIN is canonical: it comes back as it was.

@@ -53,16 +53,17 @@ class Search {
   };
 
   void attempt();
-  void follow_up();
-  bool take_out(mesh::VertexSlot v);
   mesh::VertexSlot some_neighbour(mesh::VertexSlot v);
+  bool take_out(mesh::VertexSlot v);
   void look_into_hole();
   bool recreate(std::size_t removed);
-  bool is_removed(SampleIndex sample) const;
+  bool is_mended();
+  bool look_at_fresh();
   bool put_in(const Bad& bad);
   bool a_witness_is_over() const;
   void grow_stamps();
   bool look_at(mesh::TriangleSlot t, Depth depth);
+  void remove_around();
   void roll_back();
 
   Patch& patch_;
@@ -71,7 +72,7 @@ class Search {
   std::vector<std::uint32_t> stamps_;  // of each triangle: what was said of it before is void
   std::vector<Bad> bad_;
   std::vector<Change> changes_;
-  std::vector<Site> witnesses_;
+  std::vector<Site> witnesses_;  // samples that were over the tolerance in this try
   std::vector<mesh::TriangleSlot> hole_;
   std::vector<mesh::HalfEdge> link_;
   std::vector<mesh::VertexSlot> neighbours_;

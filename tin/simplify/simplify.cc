@@ -105,6 +105,7 @@ Outcome difference(const Terrain& terrain, const Samples& samples, Choice choice
       out.removed.push_back(*id);
     } else {
       is_there[static_cast<std::size_t>(pin - pins.begin())] = true;
+      if (pin->z != terrain.vertex(*id)->z) out.reset.push_back({*id, terrain.vertex(*id)->at, pin->z});
     }
   }
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -118,11 +119,11 @@ Outcome difference(const Terrain& terrain, const Samples& samples, Choice choice
 
 }  // namespace
 
-Result<Outcome> simplify(const Terrain& terrain, const SourceSamples* source, const Options& options,
-                         base::Progress* progress) {
+Result<Outcome> simplify(const Terrain& terrain, const SourceSamples* source, std::span<const Placement> own,
+                         const Options& options, base::Progress* progress) {
   if (auto fine = check(options); !fine) return fine.error();
   const Phase whole(progress, 0, 1);
-  const auto samples = make_samples(&terrain, source, progress);
+  const auto samples = make_samples(&terrain, source, own, progress);
   if (!samples) return error(Code::kCancelled, "Cancelled.");
   auto choice = choose(*samples, source, options, whole.part(0.05, 1));
   if (!choice) return choice.error();
@@ -132,7 +133,7 @@ Result<Outcome> simplify(const Terrain& terrain, const SourceSamples* source, co
 Result<Chosen> simplify_samples(const SourceSamples& source, const Options& options, base::Progress* progress) {
   if (auto fine = check(options); !fine) return fine.error();
   const Phase whole(progress, 0, 1);
-  const auto samples = make_samples(nullptr, &source, progress);
+  const auto samples = make_samples(nullptr, &source, {}, progress);
   if (!samples) return error(Code::kCancelled, "Cancelled.");
   auto choice = choose(*samples, &source, options, whole.part(0.05, 1));
   if (!choice) return choice.error();

@@ -1,7 +1,7 @@
 // Simplification with a guarantee: a TIN of fewer vertices that stays within a vertical tolerance of all it
 // came from.
 //
-//   auto outcome = simplify(*snapshot, source, {.tolerance = 5.0, .threads = 2}, &progress);
+//   auto outcome = simplify(*snapshot, &source, {}, {.tolerance = 5.0, .threads = 2}, &progress);
 //   // outcome->removed, ->inserted: how the terrain becomes the result; ->report: how far that is from the samples
 //
 //   auto chosen = simplify_samples(source, {.tolerance = 5.0}, &progress);   // no terrain needed: the straight import
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tin/base/progress.h"
@@ -74,14 +75,17 @@ struct Report {
 
 struct Outcome {
   std::vector<terrain::VertexId> removed;     // ascending
-  std::vector<terrain::Placement> inserted;   // samples of the source that become vertices again, by position
+  std::vector<terrain::Placement> inserted;   // samples that become vertices again, by position
+  std::vector<terrain::Vertex> reset;         // vertices that stay and get this height, by id
   Report report;
 };
 
-/// Chooses the vertices that `terrain` should have. The samples are its own vertices; with a `source`, those of
-/// the source, but where a vertex stands that is no sample of the source (its position or its height is another:
-/// somebody's edit) that vertex is the sample instead. The result is the canonical Delaunay triangulation of some
-/// of the samples.
+/// Chooses the vertices that `terrain` should have. The samples are those of the `source` (null: none), people's `own`
+/// beside them, and the vertices that stand where neither has a sample: somebody's edits, or all there is. The result is
+/// the canonical Delaunay triangulation of some of the samples. What is in force of a source after edits, and which
+/// samples are people's own, terrain::Amendments knows.
+///
+/// Requires: `own` ascends by position and shares none with the source; the terrain covers all samples.
 ///
 /// `tolerance`: every sample ends up within it, compared as <= on the exact values of the doubles: the
 /// heights, the tolerance, and the interpolated height as a fraction. `max_vertices` alone: the smallest
@@ -100,7 +104,7 @@ struct Outcome {
 /// Source:   greedy insertion as in Garland and Heckbert 1995; deletion as in Devillers 2002; local search is
 ///           ruin and recreate (Schrimpf et al. 2000) that accepts equals.
 base::Result<Outcome> simplify(const terrain::Terrain& terrain, const terrain::SourceSamples* source,
-                               const Options& options, base::Progress* progress);
+                               std::span<const terrain::Placement> own, const Options& options, base::Progress* progress);
 
 struct Chosen {
   std::vector<terrain::Placement> vertices;  // by sample index
