@@ -1,6 +1,8 @@
 #include "server/app/simplify.h"
 
+#include <algorithm>
 #include <chrono>
+#include <thread>
 
 namespace server::app {
 
@@ -14,7 +16,9 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   }
   const Version seen = request.tin->version();
   progress.begin_phase(0, 0.95);
-  auto outcome = tin::simplify::simplify(*seen.terrain, nullptr, {}, request.options, &progress);
+  auto options = request.options;
+  options.threads = std::max(1U, std::thread::hardware_concurrency());
+  auto outcome = tin::simplify::simplify(*seen.terrain, nullptr, {}, options, &progress);
   if (!outcome) return outcome.error();
   progress.begin_phase(0.95, 1);
   Simplified result{outcome->report, request.tin, 1, 0};
