@@ -46,6 +46,10 @@ class SourceSamples {
   /// Null unless a raster.
   const std::shared_ptr<const SourceGrid>& grid() const { return grid_; }
   const Heights& heights() const { return *heights_; }
+  /// Of points, ascending; none in a raster.
+  std::span<const exact::Point> positions() const {
+    return points_ ? std::span<const exact::Point>(*points_) : std::span<const exact::Point>();
+  }
   /// One bit per index, 1 = a sample; empty when all are.
   std::span<const std::uint64_t> valid() const { return valid_; }
 

@@ -257,6 +257,7 @@ Terrain Terrain::without(std::span<const VertexId> ids) const {
   auto rest = restore(frame_, vertices_by_id(ids), next_id_);
   TIN_CHECK(rest.ok());
   rest->set_source_grid(source_grid_);
+  rest->set_amendments(amendments_);
   return std::move(*rest);
 }
 

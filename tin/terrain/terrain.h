@@ -16,6 +16,7 @@
 #include "tin/base/result.h"
 #include "tin/delaunay/triangulation.h"
 #include "tin/frame/frame.h"
+#include "tin/terrain/amendments.h"
 #include "tin/terrain/digest.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/id_map.h"
@@ -101,6 +102,12 @@ class Terrain {
   const SourceGrid* source_grid() const { return source_grid_.get(); }
   std::shared_ptr<const SourceGrid> shared_source_grid() const { return source_grid_; }
 
+  /// What became of the samples that the terrain was made of.
+  const Amendments& amendments() const { return amendments_; }
+  void set_amendments(Amendments amendments) { amendments_ = std::move(amendments); }
+  /// Has the samples follow a change that was applied or replayed, once it is certain to stay. Requires: it was the last.
+  void amend(const Change& change) { amendments_.take(*this, change); }
+
  private:
   base::Result<VertexId> apply_one(const Insert& edit, Duplicates duplicates, Change& change);
   base::Result<VertexId> apply_one(const Remove& edit, Duplicates duplicates, Change& change);
@@ -117,6 +124,7 @@ class Terrain {
   VertexId next_id_{1};
   VertexSetHash hash_;
   std::shared_ptr<const SourceGrid> source_grid_;
+  Amendments amendments_;
 };
 
 }  // namespace tin::terrain
