@@ -43,7 +43,8 @@ struct EditedTriangle {
 
 class Amendments {
  public:
-  explicit Amendments(SourceKind kind = SourceKind::kNone) : kind_(kind) {}
+  Amendments() = default;
+  explicit Amendments(SourceKind kind) : kind_(kind) {}
   /// From what the accessors gave. Requires: positions ascend, without repetition.
   Amendments(SourceKind kind, bool thinned, std::vector<exact::Point> touched,
              std::vector<EditedTriangle> areas, std::vector<Placement> own);
@@ -82,7 +83,7 @@ class Amendments {
   void drop_own(const Terrain& after, std::span<const exact::Point> touched,
                 std::span<const EditedTriangle> areas);
 
-  SourceKind kind_;
+  SourceKind kind_ = SourceKind::kNone;
   bool thinned_ = false;
   std::vector<exact::Point>
       touched_;  // the first sorted_ of them ascend; later ones in any order, perhaps again

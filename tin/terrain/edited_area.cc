@@ -25,7 +25,7 @@ class AreaFinder {
   /// The star of a vertex that stands.
   void add_star(VertexSlot v) {
     mesh_.link(v, link_);
-    for (const HalfEdge e : link_) add(e.triangle());
+    for (const HalfEdge e : link_) found_.push_back(e.triangle());
   }
 
   /// All triangles in whose circle `p` lies, where no vertex stands.
@@ -37,15 +37,11 @@ class AreaFinder {
     if (where.kind == Location::Kind::kOnVertex) return;
     to_visit_.clear();
     seen_.clear();
-    if (where.kind == Location::Kind::kOutsideHull) {
-      start_outside(p, where.triangle);
-    } else {
-      visit(p, where.triangle);
-    }
+    visit(p, where.kind == Location::Kind::kOutsideHull ? seen_from(p, where.triangle) : where.triangle);
     while (!to_visit_.empty()) {
       const TriangleSlot t = to_visit_.back();
       to_visit_.pop_back();
-      add(t);
+      found_.push_back(t);
       for (int i = 0; i < 3; ++i) visit(p, mesh_.twin(t, i).triangle());
     }
   }
@@ -55,37 +51,40 @@ class AreaFinder {
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
     std::vector<EditedTriangle> area;
     area.reserve(found_.size());
-    for (const TriangleSlot t : found_) area.push_back(describe(t));
+    for (const TriangleSlot t : found_) {
+      if (!mesh_.is_infinite(t)) area.push_back(describe(t));
+    }
     return area;
   }
 
  private:
-  void add(TriangleSlot t) {
-    if (!mesh_.is_infinite(t)) found_.push_back(t);
-  }
-
   void visit(Point p, TriangleSlot t) {
-    if (mesh_.is_infinite(t) || seen_.contains(t)) return;
-    const auto& v = mesh_.triangle(t).vertices;
-    if (!exact::in_circle(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), p)) return;
+    if (seen_.contains(t) || !is_in_conflict(p, t)) return;
     seen_.insert(t);
     to_visit_.push_back(t);
   }
 
-  /// Behind each hull edge that is seen from `p`, if only from its end.
-  void start_outside(Point p, TriangleSlot infinite) {
-    for (const int side : {1, -1}) {
-      TriangleSlot t = infinite;
-      for (;;) {
-        const int at = mesh_.index_of(t, mesh::kInfinite);
-        const VertexSlot from = mesh_.vertex(t, mesh::next3(at)), to = mesh_.vertex(t, mesh::prev3(at));
-        // The infinite triangle runs counter-clockwise, so the terrain is on the right of its edge.
-        if (exact::orientation(mesh_.point(from), mesh_.point(to), p) < 0) break;
-        visit(p, mesh_.twin(t, at).triangle());
-        t = mesh_.twin(t, side > 0 ? mesh::next3(at) : mesh::prev3(at)).triangle();
-        if (t == infinite) break;
-      }
+  bool is_in_conflict(Point p, TriangleSlot t) const {
+    if (!mesh_.is_infinite(t)) {
+      const auto& v = mesh_.triangle(t).vertices;
+      return exact::in_circle(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), p);
     }
+    // The infinite triangle runs counter-clockwise, so the terrain is on the right of its edge.
+    const int at = mesh_.index_of(t, mesh::kInfinite);
+    const Point from = mesh_.point(mesh_.vertex(t, mesh::next3(at))),
+                to = mesh_.point(mesh_.vertex(t, mesh::prev3(at)));
+    const std::int64_t side = exact::orientation(from, to, p);
+    return side > 0 || (side == 0 && std::min(from, to) < p && p < std::max(from, to));
+  }
+
+  /// An infinite triangle whose edge is seen from `p`, which lies outside.
+  TriangleSlot seen_from(Point p, TriangleSlot infinite) const {
+    TriangleSlot t = infinite;
+    while (!is_in_conflict(p, t)) {
+      t = mesh_.twin(t, mesh::next3(mesh_.index_of(t, mesh::kInfinite))).triangle();
+      TIN_CHECK(t != infinite);
+    }
+    return t;
   }
 
   EditedTriangle describe(TriangleSlot t) const {
@@ -102,7 +101,7 @@ class AreaFinder {
   const Mesh& mesh_;
   TriangleSlot last_{mesh::kNone};
   std::vector<HalfEdge> link_;
-  std::vector<TriangleSlot> found_, to_visit_;
+  std::vector<TriangleSlot> found_, to_visit_;  // infinite ones among them: edges of the outline that changed
   std::unordered_set<TriangleSlot> seen_;
 };
 

@@ -41,6 +41,8 @@ class SourceSamples {
   /// From what raster(), valid() and heights() gave: a stored one. Requires: sizes that fit.
   static SourceSamples restored_raster(std::shared_ptr<const SourceGrid> grid, Heights heights,
                                        std::vector<std::uint64_t> valid);
+  /// The same for points. Requires: positions ascend; one height each.
+  static SourceSamples restored_points(std::vector<exact::Point> positions, Heights heights);
 
   bool is_raster() const { return grid_ != nullptr; }
   /// Null unless a raster.
