@@ -34,7 +34,8 @@ class FailingStore : public server::store::Store {
   bool fail = false;
   std::size_t appended = 0;
 
-  Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view) override {
+  Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view,
+                          std::string_view) override {
     return status();
   }
   Result<void> update_title(std::string_view, std::string_view) override { return status(); }
@@ -51,6 +52,7 @@ class FailingStore : public server::store::Store {
   Result<server::store::Loaded> load(std::string_view) override {
     return tin::base::error(Code::kNotFound, "");
   }
+  Result<std::string> load_source(std::string_view) override { return std::string(); }
 
  private:
   Result<void> status() const {
