@@ -105,6 +105,7 @@ bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& own
 
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const Everywhere&);
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const Territory&);
+template bool Cavity::carve(const Mesh&, Point, const Stop&, const OwnedFrom&);
 
 void Cavity::fill(Mesh& mesh, VertexSlot v, TriangleSlot extra1, TriangleSlot extra2) {
   triangles_[triangle_count_++] = extra1;
