@@ -91,7 +91,9 @@ class Terrain {
   std::vector<Vertex> vertices_by_id(std::span<const VertexId> without = {}) const;
   /// What is left when the vertices of these ids (ascending) are removed, built anew: the same terrain as by
   /// removing them one by one, sooner when they are many.
-  Terrain without(std::span<const VertexId> ids) const;
+  Terrain without(std::span<const VertexId> ids) const { return replaced(ids, {}); }
+  /// The same with other vertices in their stead, whose ids, from next_id() on, ascend. Requires: no two at one position.
+  Terrain replaced(std::span<const VertexId> removed, std::span<const Vertex> added) const;
 
   std::string digest() const { return hash_.digest(frame_); }
   /// O(n) each; empty terrain: nothing.
