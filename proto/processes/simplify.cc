@@ -1,7 +1,5 @@
 #include "proto/processes/simplify.h"
 
-#include "proto/json_write.h"
-
 namespace proto {
 
 using tin::base::Code;
@@ -102,16 +100,6 @@ void write_worst(JsonWriter& json, const SimplifyWorst& worst) {
   json.end_object();
 }
 
-void write_certificate(JsonWriter& json, const SimplifyResults& results) {
-  json.key("rmse").number(results.rmse);
-  json.key("certifiedAgainst").string(results.against_source ? "original samples" : "vertices");
-  json.key("samples").integer(results.samples);
-  json.key("samplesOutOfForce").integer(results.out_of_force);
-  json.key("histogram").begin_object().key("bin").number(results.histogram_bin).key("counts").begin_array();
-  for (const std::uint64_t count : results.histogram) json.integer(count);
-  json.end_array().end_object();
-}
-
 }  // namespace
 
 Result<SimplifyEffort> parse_effort(std::string_view text, std::string where) {
@@ -150,9 +138,7 @@ Result<SimplifyInputs> read_simplify_inputs(const Value& value) {
   return request;
 }
 
-std::string simplify_results_json(const SimplifyResults& results) {
-  JsonWriter json;
-  json.begin_object();
+void write_simplify_report(JsonWriter& json, const SimplifyResults& results) {
   json.key("verticesBefore").integer(results.vertices_before);
   json.key("verticesAfter").integer(results.vertices_after);
   json.key("maxError").number(results.max_error);
@@ -162,9 +148,21 @@ std::string simplify_results_json(const SimplifyResults& results) {
     json.key("maxErrorAt").null().key("maxErrorSample").null();
   }
   json.key("toleranceMet").boolean(results.tolerance_met);
-  json.key("editedMeanwhile").boolean(results.edited_meanwhile);
-  write_certificate(json, results);
+  json.key("rmse").number(results.rmse);
+  json.key("certifiedAgainst").string(results.against_source ? "original samples" : "vertices");
+  json.key("samples").integer(results.samples);
+  json.key("samplesOutOfForce").integer(results.out_of_force);
+  json.key("histogram").begin_object().key("bin").number(results.histogram_bin).key("counts").begin_array();
+  for (const std::uint64_t count : results.histogram) json.integer(count);
+  json.end_array().end_object();
   json.key("seconds").number(results.seconds);
+}
+
+std::string simplify_results_json(const SimplifyResults& results) {
+  JsonWriter json;
+  json.begin_object();
+  write_simplify_report(json, results);
+  json.key("editedMeanwhile").boolean(results.edited_meanwhile);
   json.key("tin").string(results.tin);
   json.key("revision").integer(results.revision);
   json.end_object();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/json_write.h"
 #include "proto/messages.h"
 #include "proto/processes/process.h"
 
@@ -56,6 +57,8 @@ struct SimplifyResults {
   std::string tin;
   std::uint64_t revision = 0;
 };
+/// The members that say how good the result is, those of an object that is open already.
+void write_simplify_report(JsonWriter& json, const SimplifyResults& results);
 std::string simplify_results_json(const SimplifyResults& results);
 
 }  // namespace proto

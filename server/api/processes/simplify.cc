@@ -27,24 +27,12 @@ proto::SimplifyWorst worst_sample(const tin::simplify::Worst& worst, const tin::
 }
 
 std::string results_json(const app::Simplified& done) {
-  const auto& report = done.report;
-  proto::SimplifyResults results;
-  results.vertices_before = report.vertices_before;
-  results.vertices_after = report.vertices_after;
-  results.max_error = report.max_error;
-  results.tolerance_met = report.tolerance_met;
+  proto::SimplifyResults results = done.tin->read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
+    return results_of(done.report, terrain);
+  });
   results.edited_meanwhile = done.edited_meanwhile;
-  if (report.worst) {
-    results.worst = done.tin->read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
-      return worst_sample(*report.worst, terrain);
-    });
-  }
-  results.rmse = report.rmse;
   results.against_source = done.against_source;
-  results.samples = report.samples;
   results.out_of_force = done.out_of_force;
-  results.histogram_bin = report.bin;
-  results.histogram.assign(report.histogram.begin(), report.histogram.end());
   results.seconds = done.seconds;
   results.tin = done.tin->id();
   results.revision = done.revision;
@@ -88,6 +76,20 @@ tin::simplify::Effort effort_of(proto::SimplifyEffort effort) {
       break;
   }
   return tin::simplify::Effort::kBest;
+}
+
+proto::SimplifyResults results_of(const tin::simplify::Report& report, const tin::terrain::Terrain& terrain) {
+  proto::SimplifyResults results;
+  results.vertices_before = report.vertices_before;
+  results.vertices_after = report.vertices_after;
+  results.max_error = report.max_error;
+  if (report.worst) results.worst = worst_sample(*report.worst, terrain);
+  results.tolerance_met = report.tolerance_met;
+  results.rmse = report.rmse;
+  results.samples = report.samples;
+  results.histogram_bin = report.bin;
+  results.histogram.assign(report.histogram.begin(), report.histogram.end());
+  return results;
 }
 
 Process simplify() {

@@ -142,9 +142,9 @@ TEST(SimplifyResultsTest, KeepTheContract) {
   results.revision = 5;
   EXPECT_EQ(proto::simplify_results_json(results),
             R"({"verticesBefore":1442401,"verticesAfter":17250,"maxError":9.99,"maxErrorAt":[-71.5,44.25],)"
-            R"("maxErrorSample":{"z":1203,"column":600,"row":900},"toleranceMet":true,"editedMeanwhile":false,)"
+            R"("maxErrorSample":{"z":1203,"column":600,"row":900},"toleranceMet":true,)"
             R"("rmse":3.5,"certifiedAgainst":"original samples","samples":1442401,"samplesOutOfForce":2,)"
-            R"("histogram":{"bin":5,"counts":[1000000,442401]},"seconds":11.25,"tin":"hill","revision":5})");
+            R"("histogram":{"bin":5,"counts":[1000000,442401]},"seconds":11.25,"editedMeanwhile":false,"tin":"hill","revision":5})");
   results.worst->column = results.worst->row = std::nullopt;
   results.worst->index = 17;
   const std::string of_points = proto::simplify_results_json(results);
