@@ -1,7 +1,6 @@
 #include "tin/simplify/decimate.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace tin::simplify {
@@ -56,25 +55,10 @@ void Decimation::queue(VertexSlot v) {
   if (v == kInfinite) return;
   const std::uint32_t stamp = ++stamps_[v.value()];
   if (!patch_.is_removable(v)) return;
-  const auto cost = cost_of_removing(v);
+  const auto cost = trial_.cost_of_removing(patch_, v, tolerance_);
   if (!cost) return patch_.settle(v);
   heap_.push_back({*cost, patch_.site(v).sample, v.value(), stamp});
   std::push_heap(heap_.begin(), heap_.end());
-}
-
-/// Nothing when a sample would be over the tolerance.
-std::optional<double> Decimation::cost_of_removing(VertexSlot v) {
-  double cost = 0;
-  for (const removal::Ear& ear : trial_.fill(patch_.mesh(), v)) {
-    const std::array corners{trial_.link_vertex(ear.previous), trial_.link_vertex(ear.middle),
-                             trial_.link_vertex(ear.next)};
-    if (std::find(corners.begin(), corners.end(), kInfinite) != corners.end()) continue;
-    const Scan scan = patch_.samples().scan(patch_.site(corners[0]), patch_.site(corners[1]), patch_.site(corners[2]),
-                                            tolerance_, Depth::kFirstOver);
-    if (scan.over) return std::nullopt;
-    cost = std::max(cost, scan.error);
-  }
-  return cost;
 }
 
 }  // namespace tin::simplify

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "tin/removal/remover.h"
 #include "tin/simplify/patch.h"
 #include "tin/simplify/phase.h"
+#include "tin/simplify/trial.h"
 
 namespace tin::simplify {
 
@@ -34,11 +34,10 @@ class Decimation {
   };
   bool queue_all(const Phase& phase);
   void queue(mesh::VertexSlot v);
-  std::optional<double> cost_of_removing(mesh::VertexSlot v);
 
   Patch& patch_;
   double tolerance_;
-  removal::Remover trial_;
+  Trial trial_;
   std::vector<Candidate> heap_;
   std::vector<std::uint32_t> stamps_;  // of each vertex: candidates with an older one are void
   std::vector<mesh::HalfEdge> link_;

@@ -33,7 +33,7 @@ Greedy::End Greedy::run(std::size_t budget, const Phase& phase, const std::funct
 
 bool Greedy::queue_all(const Phase& phase, const std::function<bool(TriangleSlot)>& suspect) {
   const std::uint32_t slots = patch_.mesh().triangle_slots();
-  wanted_.assign(slots, kNoSample);
+  wishes_.assign(slots, {});
   for (std::uint32_t i = 0; i < slots; ++i) {
     if (phase.cancelled()) return false;
     if (suspect && !suspect(TriangleSlot(i))) continue;
@@ -43,12 +43,12 @@ bool Greedy::queue_all(const Phase& phase, const std::function<bool(TriangleSlot
 }
 
 void Greedy::queue(TriangleSlot t) {
-  if (t.value() >= wanted_.size()) wanted_.resize(t.value() + 1, kNoSample);
-  wanted_[t.value()] = kNoSample;
+  if (t.value() >= wishes_.size()) wishes_.resize(t.value() + 1);
+  wishes_[t.value()] = {};
   if (patch_.mesh().is_infinite(t)) return;
   const Scan scan = patch_.scan(t, target_, Depth::kWorst);
   if (!scan.over) return;
-  wanted_[t.value()] = scan.sample;
+  wishes_[t.value()] = {scan.error, scan.sample};
   heap_.push_back({scan.error, scan.sample, t.value()});
   std::push_heap(heap_.begin(), heap_.end());
 }
@@ -59,8 +59,9 @@ std::optional<Greedy::Candidate> Greedy::take_worst() {
     std::pop_heap(heap_.begin(), heap_.end());
     const Candidate candidate = heap_.back();
     heap_.pop_back();
-    if (wanted_[candidate.triangle] != candidate.sample) continue;
-    wanted_[candidate.triangle] = kNoSample;
+    Wish& wish = wishes_[candidate.triangle];
+    if (wish.sample != candidate.sample || wish.error != candidate.error) continue;
+    wish = {};
     return candidate;
   }
   return std::nullopt;

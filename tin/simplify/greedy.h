@@ -51,7 +51,11 @@ class Greedy {
   Patch& patch_;
   double target_;
   std::vector<Candidate> heap_;
-  std::vector<SampleIndex> wanted_;  // of each triangle: candidates for another sample are void
+  struct Wish {
+    double error = 0;
+    SampleIndex sample = kNoSample;
+  };
+  std::vector<Wish> wishes_;  // of each triangle: other candidates are void
   std::vector<mesh::VertexSlot> inserted_;
   double best_error_ = std::numeric_limits<double>::infinity();
   std::size_t best_count_ = 0;  // of inserted_

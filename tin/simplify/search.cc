@@ -1,8 +1,9 @@
 #include "tin/simplify/search.h"
 
+#include <algorithm>
+
 #include "tin/base/check.h"
-#include <cstdio>
-#include <cstdlib>
+#include "tin/delaunay/walk.h"
 
 namespace tin::simplify {
 
@@ -11,11 +12,14 @@ using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
 namespace {
-struct Count { long tried[3]{}, ok[3][3]{}; ~Count(){ fprintf(stderr,"1: %ld ->0 %ld ->1 %ld ; 2: %ld ->0 %ld ->1 %ld ->2 %ld\n",tried[1],ok[1][0],ok[1][1],tried[2],ok[2][0],ok[2][1],ok[2][2]); } } g_count;
-int env(const char*n,int d){ const char*v=getenv(n); return v?atoi(v):d; }
-const int kPair=env("PAIR",60), kNear=env("NEAR",50), kR=env("R",1), env_same=env("SAME",1);
+
+// All three were found by experiment, on mountains and plains alike.
+constexpr std::uint32_t kPairs = 30;    // percent of the tries that take out two vertices
+constexpr std::uint32_t kBeside = 50;   // percent of the insertions beside the worst sample, not there
+constexpr std::uint32_t kReach = 1;     // how many cells beside
 constexpr std::size_t kBetweenQuestions = 64;  // tries between two looks at whether to stop
-}
+
+}  // namespace
 
 void Search::run(std::size_t tries, const std::function<bool()>& stop) {
   if (patch_.mesh().dimension() < 2) return;
@@ -32,11 +36,17 @@ void Search::attempt() {
   if (!patch_.mesh().is_alive(v) || !patch_.is_removable(v)) return;
   changes_.clear();
   bad_.clear();
-  const VertexSlot other = (int)random_.below(100) < kPair ? some_neighbour(v) : kInfinite;
+  witnesses_.clear();
+  hole_.clear();
+  const VertexSlot other = random_.below(100) < kPairs ? some_neighbour(v) : kInfinite;
   if (!take_out(v)) return;
   if (other != kInfinite && patch_.is_removable(other) && !take_out(other)) return roll_back();
-  const auto n = changes_.size(); ++g_count.tried[n];
-  if (!recreate(n)) roll_back(); else ++g_count.ok[n][changes_.size()-n];
+  look_into_hole();
+  if (recreate(changes_.size())) {
+    remove_around();
+  } else {
+    roll_back();
+  }
 }
 
 VertexSlot Search::some_neighbour(VertexSlot v) {
@@ -49,39 +59,59 @@ bool Search::take_out(VertexSlot v) {
   if (!patch_.remove(v)) return false;
   near_ = patch_.fresh().front();
   changes_.push_back({false, v, site});
-  note_bad(Depth::kWorst);
+  witnesses_.push_back(site);
+  hole_.insert(hole_.end(), patch_.fresh().begin(), patch_.fresh().end());
   return true;
+}
+
+void Search::look_into_hole() {
+  grow_stamps();
+  std::sort(hole_.begin(), hole_.end());
+  hole_.erase(std::unique(hole_.begin(), hole_.end()), hole_.end());
+  for (const TriangleSlot t : hole_) {
+    if (patch_.mesh().is_alive(t)) look_at(t, Depth::kWorst);
+  }
 }
 
 /// Inserts at most `removed` samples. False when the tolerance is not reached that way.
 bool Search::recreate(std::size_t removed) {
   for (std::size_t inserted = 0;; ++inserted) {
-    std::erase_if(bad_, [this](const Bad& bad) { return is_outdated(bad); });
+    std::erase_if(bad_, [this](const Bad& bad) { return stamps_[bad.triangle.value()] != bad.stamp; });
     if (bad_.empty()) return true;
     if (inserted == removed) return false;
     if (!put_in(bad_[random_.below(static_cast<std::uint32_t>(bad_.size()))])) return false;
-    if (!note_bad(inserted + 1 == removed ? Depth::kFirstOver : Depth::kWorst)) return false;
+    grow_stamps();
+    for (const TriangleSlot t : patch_.fresh()) ++stamps_[t.value()];
+    if (!(inserted + 1 == removed ? is_mended() : look_at_fresh())) return false;
   }
 }
 
-bool Search::is_outdated(const Bad& bad) const {
-  return stamps_[bad.triangle.value()] != bad.stamp || !patch_.mesh().is_alive(bad.triangle);
+/// After the last insertion: whether all is within the tolerance now. What is likely to be over is asked first.
+bool Search::is_mended() {
+  const auto is_left = [this](const Bad& bad) { return stamps_[bad.triangle.value()] == bad.stamp; };
+  if (std::any_of(bad_.begin(), bad_.end(), is_left) || a_witness_is_over()) return false;
+  const auto fresh = patch_.fresh();
+  return std::none_of(fresh.begin(), fresh.end(), [this](TriangleSlot t) { return look_at(t, Depth::kFirstOver); });
 }
 
-bool Search::is_removed(SampleIndex s) const {
-  for (const Change& c : changes_) if (!c.inserted && c.site.sample == s) return true;
-  return false;
+bool Search::look_at_fresh() {
+  for (const TriangleSlot t : patch_.fresh()) look_at(t, Depth::kWorst);
+  return true;
 }
 
-/// Makes a sample near the worst one a vertex, or that itself.
+/// Makes a sample near the worst one a vertex, or that itself: never what was just taken out, if that can be had.
 bool Search::put_in(const Bad& bad) {
   const Samples& samples = patch_.samples();
   Site site = samples.site(bad.sample);
-  const bool same = env_same && is_removed(bad.sample);
-  if (same || (int)random_.below(100) < kNear) {
-    const auto offset = [this] { return static_cast<std::int32_t>(random_.below(2*kR+1)) - kR; };
-    const auto near = samples.neighbour(bad.sample, offset(), offset());
-    if (near) site = samples.site(*near);
+  const bool was_vertex = std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+    return !change.inserted && change.site.sample == bad.sample;
+  });
+  if (was_vertex || random_.below(100) < kBeside) {
+    const auto offset = [this] {
+      return static_cast<std::int32_t>(random_.below(2 * kReach + 1)) - static_cast<std::int32_t>(kReach);
+    };
+    const std::int32_t columns = offset(), rows = offset();
+    if (const auto beside = samples.neighbour(bad.sample, columns, rows)) site = samples.site(*beside);
   }
   const auto v = patch_.insert(site, bad.triangle);
   if (!v) return false;
@@ -90,18 +120,49 @@ bool Search::put_in(const Bad& bad) {
   return true;
 }
 
-/// Looks at the triangles that the last change made. With kFirstOver: false once one is over the tolerance.
-bool Search::note_bad(Depth depth) {
-  if (stamps_.size() < patch_.mesh().triangle_slots()) stamps_.resize(patch_.mesh().triangle_slots() + 64, 0);
+/// Whether one of the samples that were over the tolerance before is so in the star of the last insertion.
+bool Search::a_witness_is_over() const {
   for (const TriangleSlot t : patch_.fresh()) {
-    const std::uint32_t stamp = ++stamps_[t.value()];
     if (patch_.mesh().is_infinite(t)) continue;
-    const Scan scan = patch_.scan(t, tolerance_, depth);
-    if (!scan.over) continue;
-    if (depth == Depth::kFirstOver) return false;
-    bad_.push_back({t, stamp, scan.sample});
+    const auto& v = patch_.mesh().triangle(t).vertices;
+    const Site &a = patch_.site(v[0]), &b = patch_.site(v[1]), &c = patch_.site(v[2]);
+    const Facet facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z});
+    for (const Site& witness : witnesses_) {
+      const auto weights = facet.weights(witness.at);
+      if (weights && !facet.judge(*weights, witness.z, tolerance_).within) return true;
+    }
   }
+  return false;
+}
+
+void Search::grow_stamps() {
+  if (stamps_.size() < patch_.mesh().triangle_slots()) stamps_.resize(patch_.mesh().triangle_slots() + 64, 0);
+}
+
+/// Whether a sample over the triangle is over the tolerance; then notes it.
+bool Search::look_at(TriangleSlot t, Depth depth) {
+  if (patch_.mesh().is_infinite(t)) return false;
+  const Scan scan = patch_.scan(t, tolerance_, depth);
+  if (!scan.over) return false;
+  bad_.push_back({t, stamps_[t.value()], scan.sample});
+  witnesses_.push_back(patch_.samples().site(scan.sample));
   return true;
+}
+
+/// A change may have made vertices around it superfluous.
+void Search::remove_around() {
+  neighbours_.clear();
+  for (const Change& change : changes_) {
+    if (!change.inserted) continue;
+    patch_.mesh().link(change.vertex, link_);
+    for (const mesh::HalfEdge e : link_) neighbours_.push_back(patch_.mesh().origin(e));
+  }
+  std::sort(neighbours_.begin(), neighbours_.end());
+  neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
+  for (const VertexSlot v : neighbours_) {
+    if (v == kInfinite || !patch_.is_removable(v)) continue;
+    if (trial_.cost_of_removing(patch_, v, tolerance_)) patch_.remove(v);
+  }
 }
 
 /// The TIN is canonical: it comes back as it was.
@@ -110,11 +171,10 @@ void Search::roll_back() {
     const Change& change = changes_.back();
     if (change.inserted) {
       TIN_CHECK(patch_.remove(change.vertex));
-      near_ = patch_.fresh().front();
     } else {
       TIN_CHECK(patch_.insert(change.site, delaunay::finite_start(patch_.mesh(), near_)).has_value());
-      near_ = patch_.fresh().front();
     }
+    near_ = patch_.fresh().front();
   }
 }
 

@@ -7,7 +7,9 @@
 #include <functional>
 #include <vector>
 
+#include "tin/simplify/facet.h"
 #include "tin/simplify/patch.h"
+#include "tin/simplify/trial.h"
 
 namespace tin::simplify {
 
@@ -51,13 +53,17 @@ class Search {
   };
 
   void attempt();
-  bool take_out(mesh::VertexSlot v);
   mesh::VertexSlot some_neighbour(mesh::VertexSlot v);
+  bool take_out(mesh::VertexSlot v);
+  void look_into_hole();
   bool recreate(std::size_t removed);
-  bool is_outdated(const Bad& bad) const;
-  bool is_removed(SampleIndex s) const;
+  bool is_mended();
+  bool look_at_fresh();
   bool put_in(const Bad& bad);
-  bool note_bad(Depth depth);
+  bool a_witness_is_over() const;
+  void grow_stamps();
+  bool look_at(mesh::TriangleSlot t, Depth depth);
+  void remove_around();
   void roll_back();
 
   Patch& patch_;
@@ -66,7 +72,11 @@ class Search {
   std::vector<std::uint32_t> stamps_;  // of each triangle: what was said of it before is void
   std::vector<Bad> bad_;
   std::vector<Change> changes_;
+  std::vector<Site> witnesses_;  // samples that were over the tolerance in this try
+  std::vector<mesh::TriangleSlot> hole_;
   std::vector<mesh::HalfEdge> link_;
+  std::vector<mesh::VertexSlot> neighbours_;
+  Trial trial_;
   mesh::TriangleSlot near_{mesh::kNone};  // made by the last change
 };
 
