@@ -52,7 +52,6 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
   wanted.options.seed = inputs->seed;
   wanted.options.threads = app::simplify_threads();
   wanted.options.tolerance = inputs->tolerance;
-  wanted.options.effort = tin::simplify::Effort::kFast;
   if (inputs->max_vertices) wanted.options.max_vertices = static_cast<std::size_t>(*inputs->max_vertices);
   return Execution{
       (*tin)->id(),
