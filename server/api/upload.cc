@@ -163,6 +163,9 @@ Result<Response> create_from_upload(Context& context, Request& request) {
   if (!import) return import.error();
   if (auto room = context.catalogue.check_room(import->id); !room) return room.error();
   if (prefers_async(request)) return import_as_job(context, request, std::move(*import));
+  if (import->simplify && import->simplify->effort > tin::simplify::Effort::kBalanced) {
+    return error(Code::kInvalidValue, "So much effort takes a job: ask with Prefer: respond-async.", "query:effort");
+  }
   const Slot slot(context.uploads);
   if (!slot.taken())
     return error(Code::kTooMany,

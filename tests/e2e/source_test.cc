@@ -84,7 +84,8 @@ TEST_F(SourceTest, AStraightImportEqualsASimplificationOfTheWhole) {
   served_->simplify({{"tin", "whole"}, {"tolerance", 5}, {"effort", "fast"}});
   EXPECT_EQ(digest("straight"), digest("whole"));
   expect_kept(dem, "straight", served_->simplify({{"tin", "straight"}, {"tolerance", 2}}), 2);
-  for (const char* query : {"?tolerance=-1", "?tolerance=x", "?effort=fast", "?tolerance=1&effort=most"}) {
+  for (const char* query : {"?tolerance=-1", "?tolerance=x", "?effort=fast", "?tolerance=1&effort=most",
+                            "?tolerance=1&effort=best"}) {
     const RawAnswer refused = served_->upload(query, dem.file);
     EXPECT_TRUE(refused.status == 400 || refused.status == 422) << query << refused.status;
   }
