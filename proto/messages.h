@@ -163,6 +163,7 @@ struct CollectionDocument {
   std::optional<std::array<double, 4>> bbox;  // CRS84
   std::vector<std::string> crs;               // URIs
   std::string storage_crs;                    // URI; left out when empty
+  bool features = true;                       // has items; else it is a coverage
   std::vector<Link> links;
 };
 std::string collection_json(const CollectionDocument& collection);

@@ -69,6 +69,9 @@ struct HttpConfig {
 struct Config {
   Listen listen;
   std::filesystem::path data_dir = "data";
+  /// What clients call this server, such as "https://terrain.example.org"; empty: what their Host field says. No slash at
+  /// the end.
+  std::string public_url;
   std::string log_level = "info";  // debug, info, warning, error or off
   LimitConfig limits;
   JobConfig jobs;

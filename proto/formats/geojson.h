@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,8 @@ class GeoJsonWriter {
   /// A Polygon of four positions whose id is "a-b-c". Requires: counter-clockwise, ids[i] stands at
   /// corners[i]. Ensures: the same bytes whichever corner comes first: the smallest id begins.
   void triangle(const std::array<VertexId, 3>& ids, const std::array<Position, 3>& corners);
+  /// A LineString of two positions whose id is "a-b". `hull`: nothing lies on one of its sides.
+  void edge(const std::array<VertexId, 2>& ids, const std::array<Position, 2>& ends, bool hull);
   void end();
 
  private:
@@ -56,5 +59,8 @@ class GeoJsonWriter {
 
 /// The id that triangle() writes.
 std::string triangle_id(const std::array<VertexId, 3>& ids);
+
+/// A feature as the writer appended it, with links.
+std::string feature_with_links(std::string_view feature, std::span<const Link> links);
 
 }  // namespace proto::formats

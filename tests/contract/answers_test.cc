@@ -128,7 +128,25 @@ class AnswersTest : public testing::Test {
             {{"GET", path + "/vertices"}, 200},
             {{"GET", path + "/triangles"}, 200},
             {{"GET", path + "/vertices?a=1"}, 400},
-            {{"GET", path + "/edges"}, 404},
+            {{"GET", path + "/edges"}, 200},
+            {{"GET", path + "/vertices", "", "", "Accept: text/html\r\n"}, 200},
+            {{"GET", path + "/faces"}, 404},
+            {{"GET", path + "/edges/schema"}, 200},
+            {{"GET", path + "/vertices/schema"}, 200},
+            {{"GET", path + "/triangles/schema"}, 200},
+            {{"GET", path + "/edges/schema?a=1"}, 400},
+            {{"GET", path + "/faces/schema"}, 404},
+            {{"GET", path + "/vertices/items/1"}, 200},
+            {{"GET", path + "/triangles/items/1-2-3"}, 404},
+            {{"GET", path + "/edges/items/1-2"}, 200},
+            {{"GET", path + "/vertices/items/1?crs=EPSG:1"}, 400},
+            {{"GET", path + "/vertices/items/99"}, 404},
+            {{"GET", "/tins/hill/conformance"}, 200},
+            {{"GET", "/tins/hill/conformance?a=1"}, 400},
+            {{"GET", "/tins/none/conformance"}, 404},
+            {{"GET", "/tins/hill/api"}, 200},
+            {{"GET", "/tins/hill/api?a=1"}, 400},
+            {{"GET", "/tins/none/api"}, 404},
             {{"GET", path + "/vertices/items"}, 200},
             {{"GET", path + "/triangles/items?limit=1"}, 200},
             {{"GET", "/tins/local/collections/triangles/items"}, 200},
@@ -136,9 +154,49 @@ class AnswersTest : public testing::Test {
             {{"GET", path + "/vertices/items?bbox=-82,40,-80,41"}, 200},
             {{"GET", path + "/vertices/items?bbox=1"}, 400},
             {{"GET", path + "/vertices/items?next=abc"}, 400},
-            {{"GET", path + "/edges/items"}, 404},
-            {{"GET", path + "/vertices/items?next=999.1.0"}, 410},
-            {{"GET", path + "/vertices/items?limit=0"}, 422}});
+            {{"GET", path + "/edges/items"}, 200},
+            {{"GET", path + "/faces/items"}, 404},
+            {{"GET", path + "/vertices/items?next=999.1.0.0"}, 410},
+            {{"GET", path + "/vertices/items?limit=0"}, 400}});
+  }
+
+  void ask_vertices() {
+    const std::string items = "/tins/hill/collections/vertices/items", one = items + "/1", geo = "application/geo+json";
+    const std::string any = "If-Match: *\r\n", patch = "application/merge-patch+json";
+    const auto point = [](const std::string& at) {
+      return R"({"type":"Feature","geometry":{"type":"Point","coordinates":[)" + at + R"(]},"properties":{}})";
+    };
+    const std::string inside = point("-80.9997,40.6505,15"), big(3000, ' ');
+    expect({{{"POST", items, geo, inside}, 201},
+            {{"POST", items, geo, "{"}, 400},
+            {{"POST", "/tins/none/collections/vertices/items", geo, inside}, 404},
+            {{"POST", items, geo, inside}, 409},
+            {{"POST", items, geo, big}, 413},
+            {{"POST", items, "text/plain", inside}, 415},
+            {{"POST", items, geo, point("-81,40.65")}, 422},
+            {{"PUT", one, geo, point("-81,40.6502,3"), any}, 204},
+            {{"PUT", one, geo, "{}", any}, 400},
+            {{"PUT", items + "/99", geo, inside, any}, 404},
+            {{"PUT", one, geo, inside, any}, 409},
+            {{"PUT", one, geo, inside, "If-Match: \"x\"\r\n"}, 412},
+            {{"PUT", one, geo, big, any}, 413},
+            {{"PUT", one, "text/plain", inside, any}, 415},
+            {{"PUT", one, geo, point("0,0,3"), any}, 422},
+            {{"PUT", one, geo, inside}, 428},
+            {{"PATCH", one, patch, R"({"properties":{"z":4}})", any}, 204},
+            {{"PATCH", one, patch, R"({"properties":{"z":"4"}})", any}, 400},
+            {{"PATCH", items + "/99", patch, R"({"properties":{"z":4}})", any}, 404},
+            {{"PATCH", one, patch, inside, any}, 409},
+            {{"PATCH", one, patch, inside, "If-Match: \"x\"\r\n"}, 412},
+            {{"PATCH", one, patch, big, any}, 413},
+            {{"PATCH", one, "text/plain", inside, any}, 415},
+            {{"PATCH", one, patch, "{}", any}, 422},
+            {{"PATCH", one, patch, R"({"properties":{"z":4}})"}, 428},
+            {{"DELETE", one}, 428},
+            {{"DELETE", one, "", "", "If-Match: \"x\"\r\n"}, 412},
+            {{"DELETE", one + "?a=1", "", "", any}, 400},
+            {{"DELETE", one, "", "", any}, 204},
+            {{"DELETE", one, "", "", any}, 404}});
   }
 
   void ask_exports() {
@@ -221,6 +279,7 @@ TEST_F(AnswersTest, EveryDocumentedStatusIsGivenAndFitsItsSchema) {
   ask_edits();
   ask_elevations();
   ask_collections();
+  ask_vertices();
   ask_exports();
   ask_processes();
   ask_jobs();

@@ -55,6 +55,14 @@ TEST(ConfigTest, EveryNumberOfTheExampleCounts) {
   EXPECT_EQ(numbers, 31);
 }
 
+TEST(ConfigTest, APublicUrlIsOneOfTheWeb) {
+  EXPECT_EQ(parsed(R"({"public_url":"https://terrain.example.org/a"})").public_url, "https://terrain.example.org/a");
+  EXPECT_EQ(parsed(R"({"public_url":""})").public_url, "");
+  for (const char* wrong : {"7", "\"ftp://a\"", "\"http://a/\"", "\"http://a b\"", "\"http://a?x\"", "\"a.example.org\""}) {
+    expect_error(std::string(R"({"public_url":)") + wrong + "}", Code::kInvalidValue, "/public_url");
+  }
+}
+
 TEST(ConfigTest, TheExampleHasEveryKey) {
   constexpr std::size_t kNumbers =
       (sizeof(LimitConfig) + sizeof(JobConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
