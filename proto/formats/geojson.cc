@@ -37,8 +37,10 @@ std::string triangle_id(const std::array<VertexId, 3>& ids) {
   return id;
 }
 
-GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates)
-    : out_(out), decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals) {}
+GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates, bool continued)
+    : out_(out),
+      decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals),
+      first_(!continued) {}
 
 void GeoJsonWriter::begin(const CollectionHead& head) {
   JsonWriter json;
@@ -80,6 +82,18 @@ void GeoJsonWriter::triangle(const std::array<VertexId, 3>& ids, const std::arra
   out_ += R"(]]},"properties":{"vertices":[)";
   append_ids(out_, ordered, ',');
   out_ += "]}}";
+}
+
+void GeoJsonWriter::contour(double z, bool closed, std::span<const Position2> at) {
+  separate();
+  out_ += R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[)";
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) out_ += ',';
+    append_position({at[i].x, at[i].y, z});
+  }
+  out_ += R"(]},"properties":{"elevation":)";
+  append_shortest(out_, z);
+  out_ += closed ? R"(,"closed":true}})" : R"(,"closed":false}})";
 }
 
 void GeoJsonWriter::end() {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,7 +36,8 @@ struct CollectionHead {
 /// Appends to a string that the caller may empty between any two calls.
 class GeoJsonWriter {
  public:
-  GeoJsonWriter(std::string& out, Coordinates coordinates);
+  /// `continued`: features were written already, by another writer.
+  GeoJsonWriter(std::string& out, Coordinates coordinates, bool continued = false);
 
   void begin(const CollectionHead& head);
   /// A Point with the vertex's id as its id. Requires: finite coordinates.
@@ -43,6 +45,8 @@ class GeoJsonWriter {
   /// A Polygon of four positions whose id is "a-b-c". Requires: counter-clockwise, ids[i] stands at
   /// corners[i]. Ensures: the same bytes whichever corner comes first: the smallest id begins.
   void triangle(const std::array<VertexId, 3>& ids, const std::array<Position, 3>& corners);
+  /// A LineString of `z` with the properties "elevation" and "closed". Requires: two positions or more, finite.
+  void contour(double z, bool closed, std::span<const Position2> at);
   void end();
 
  private:
@@ -51,7 +55,7 @@ class GeoJsonWriter {
 
   std::string& out_;
   int decimals_;
-  bool first_ = true;
+  bool first_;
 };
 
 /// The id that triangle() writes.

@@ -221,7 +221,7 @@ void Rasteriser::paint_span(const Scan& scan, std::size_t row, std::size_t first
   if (layer_ == RasterLayer::kElevation) {
     Facet(terrain_, scan.corners).z_along(y_[row], {x_.doubles() + first, end - first}, out);
   } else {
-    std::fill_n(out, end - first, shown(gradient_->of(scan.triangle, y_[row])));
+    std::fill_n(out, end - first, layer_value(layer_, gradient_->of(scan.triangle, y_[row]), shade_));
   }
 }
 
@@ -233,7 +233,7 @@ void Rasteriser::clear_voids(std::size_t row, std::size_t first, std::size_t end
 
 void Rasteriser::paint_vertex(VertexSlot v) {
   const Point p = mesh_.point(v);
-  const double value = layer_ == RasterLayer::kElevation ? terrain_.z(v) : shown(gradient_->at_vertex(v));
+  const double value = layer_ == RasterLayer::kElevation ? terrain_.z(v) : layer_value(layer_, gradient_->at_vertex(v), shade_);
   for (std::size_t r = std::max(y_.first_from(p.y), strip_begin_); r < strip_end_ && y_[r] == p.y; ++r) {
     for (std::size_t c = x_.first_from(p.x); c < x_.size() && x_[c] == p.x; ++c) *at(r, c) = value;
   }
@@ -250,10 +250,10 @@ void Rasteriser::paint_line() {
   }
 }
 
-double Rasteriser::shown(Gradient g) const {
-  if (layer_ == RasterLayer::kSlope) return slope_degrees(g);
-  if (layer_ == RasterLayer::kAspect) return aspect_degrees(g).value_or(-1);
-  return 1 + 254 * shade_(g);
+double layer_value(RasterLayer layer, Gradient g, const Shade& shade) {
+  if (layer == RasterLayer::kSlope) return slope_degrees(g);
+  if (layer == RasterLayer::kAspect) return aspect_degrees(g).value_or(-1);
+  return 1 + 254 * shade(g);
 }
 
 }  // namespace tin::query

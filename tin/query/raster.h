@@ -30,6 +30,9 @@ enum class RasterLayer {
   kHillshade,  // 1 (in the shade) to 255, as gdaldem has it: 1 + 254 * Shade
 };
 
+/// What such a layer has for a gradient. Requires: not kElevation.
+double layer_value(RasterLayer layer, Gradient g, const Shade& shade);
+
 struct RasterOptions {
   RasterLayer layer = RasterLayer::kElevation;
   Voids voids = Voids::kKeep;
@@ -77,7 +80,6 @@ class Rasteriser {
   void clear_voids(std::size_t row, std::size_t first, std::size_t end);
   void paint_vertex(mesh::VertexSlot v);
   void paint_line();
-  double shown(Gradient g) const;
   double* at(std::size_t row, std::size_t column) {
     return strip_.data() + (row - strip_begin_) * x_.size() + column;
   }

@@ -70,8 +70,6 @@ double along(std::int32_t from, std::int32_t to) { return static_cast<double>(to
 double Facet::dz_dx() const { return (rise_b_ * along(a_.y, c_.y) - rise_c_ * along(a_.y, b_.y)) / area_; }
 double Facet::dz_dy() const { return (rise_c_ * along(a_.x, b_.x) - rise_b_ * along(a_.x, c_.x)) / area_; }
 
-double Facet::z(frame::Place p) const { return za_ + dz_dx() * (p.x - a_.x) + dz_dy() * (p.y - a_.y); }
-
 double Facet::z(Point p) const {
   const auto weight_b = static_cast<double>(orientation(a_, p, c_)),
              weight_c = static_cast<double>(orientation(a_, b_, p));

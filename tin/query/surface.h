@@ -24,6 +24,13 @@ bool owns_edge(const mesh::Mesh& mesh, mesh::TriangleSlot t, int index);
 /// follows its smallest finite neighbour counter-clockwise. Requires: dimension 2, not outside.
 mesh::TriangleSlot answering_triangle(const mesh::Mesh& mesh, const delaunay::Location& where);
 
+/// An elevation that is linear in the place.
+struct Plane {
+  frame::Place origin;
+  double z = 0, dz_dx = 0, dz_dy = 0;
+  double operator()(frame::Place p) const { return z + dz_dx * (p.x - origin.x) + dz_dy * (p.y - origin.y); }
+};
+
 /// The plane through a triangle's corners.
 class Facet {
  public:
@@ -32,8 +39,8 @@ class Facet {
 
   /// Elevation at a lattice point; equal for every history of the same set. Level triangles are level to the last bit.
   double z(exact::Point p) const;
-  /// The same between lattice points; rounded differently.
-  double z(frame::Place p) const;
+  /// For places between lattice points; rounded differently.
+  Plane plane() const { return {frame::place(a_), za_, dz_dx(), dz_dy()}; }
   /// z at the lattice points of ordinate `y` and abscissas `x`, as z() has them, bit for bit. Requires: room for them in `out`.
   void z_along(std::int32_t y, std::span<const double> x, double* out) const;
   /// Change of elevation per lattice step in x and in y.

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "tests/support/point_sets.h"
+#include "tests/tin/simplify/terrains.h"
 #include "tin/frame/ground.h"
 #include "tin/terrain/terrain.h"
 
@@ -27,6 +29,18 @@ inline tin::frame::Ground metre_ground() {
   tin::frame::Frame frame;
   frame.x = frame.y = {0, 1, 1};
   return {frame, {}};
+}
+
+/// The terrain of a raster whose cells without heights are void, `dx` by `dy` lattice steps each.
+inline tin::terrain::Terrain voided_terrain(const Heights& raster, std::int32_t dx, std::int32_t dy) {
+  auto terrain = raster_terrain(raster, dx, dy);
+  auto grid = std::make_shared<tin::terrain::SourceGrid>(*terrain.source_grid());
+  grid->valid.assign((raster.z.size() + 63) / 64, 0);
+  for (std::size_t i = 0; i < raster.z.size(); ++i) {
+    if (raster.z[i]) grid->valid[i / 64] |= std::uint64_t{1} << (i % 64);
+  }
+  terrain.set_source_grid(std::move(grid));
+  return terrain;
 }
 
 inline double plane(tin::exact::Point p) { return 3 + 0.25 * p.x - 0.5 * p.y; }

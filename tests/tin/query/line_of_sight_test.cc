@@ -52,7 +52,7 @@ TEST(LineOfSightTest, TouchingTheGroundDoesNotBlock) {
   const Terrain slope = support::terrain_of(support::random_points(random, 300, 1000), support::plane);
   ElevationQuery query(slope, Voids::kKeep);
   for (const Point p : support::random_points(random, 200, 700)) {
-    if (query.at(p)) EXPECT_TRUE(sight(slope, {{0, 0}, p}).visible);
+    if (query.at(p)) { EXPECT_TRUE(sight(slope, {{0, 0}, p}).visible); }
   }
 }
 
@@ -96,7 +96,7 @@ TEST(LineOfSightTest, OverASeaEndsAtTheHorizon) {
   request.target = {5060, 0};
   const Sight beyond = sight(sea, request);
   EXPECT_FALSE(beyond.visible);
-  EXPECT_NEAR(beyond.closest.distance, 5054, 4) << "the sea bulges between the vertices";
+  EXPECT_NEAR(beyond.closest.distance, 5048.2, 0.1) << "the sea bulges between the vertices";
   request.curvature = false;
   EXPECT_TRUE(sight(sea, request).visible);
   request.curvature = true;
@@ -115,7 +115,7 @@ TEST(LineOfSightTest, NeedsASurfaceAtBothEnds) {
   EXPECT_EQ(line_of_sight(terrain, ground, {{0, 50}, {1001, 50}}, 1000).error().where, "target");
   for (const auto& [name, degenerate] : support::degenerate_terrains()) {
     const auto found = line_of_sight(degenerate, ground, {{0, 0}, {6, 0}}, 1000);
-    if (found) EXPECT_TRUE(found->visible) << name;
+    if (found) { EXPECT_TRUE(found->visible) << name; }
   }
   const Sight here = sight(terrain, {{10, 10}, {10, 10}, 1, 2});
   EXPECT_TRUE(here.visible);

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "tests/tin/query/analytic.h"
-#include "tests/tin/simplify/terrains.h"
 #include "tin/exact/predicates.h"
 #include "tin/mesh/validate.h"
 #include "tin/query/elevation.h"
@@ -58,7 +57,7 @@ std::set<double> crossings(const Terrain& terrain, Point p, Point q) {
 /// Equal up to rounding: every crossing is a point of the profile, and every point but the ends is a crossing.
 void expect_all_crossings(const Terrain& terrain, Point p, Point q, const std::string& name) {
   const auto found = profile_of(terrain, {p, q});
-  const double length = std::hypot(double(q.x) - p.x, double(q.y) - p.y), near = 1e-9 * length;
+  const double length = std::hypot(double(q.x) - p.x, double(q.y) - p.y), near = std::max(1e-9 * length, 1e-6);
   const auto expected = crossings(terrain, p, q);
   for (const double d : expected) {
     EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const ProfilePoint& f) { return f.z && std::abs(f.distance - d) <= near; }))
@@ -119,7 +118,7 @@ TEST(ProfileTest, IsStraightBetweenItsPoints) {
     const Point middle{static_cast<std::int32_t>(std::lround((found[i - 1].at.x + found[i].at.x) / 2)),
                        static_cast<std::int32_t>(std::lround((found[i - 1].at.y + found[i].at.y) / 2))};
     const auto there = query.at(middle);
-    if (there) EXPECT_NEAR(there->z, (*found[i - 1].z + *found[i].z) / 2, 0.1);
+    if (there) { EXPECT_NEAR(there->z, (*found[i - 1].z + *found[i].z) / 2, 0.1); }
   }
 }
 
@@ -144,7 +143,7 @@ TEST(ProfileTest, HasGapsOverVoidsWhereElevationsHave) {
     if (c >= 2 && c < 7 && r >= 3 && r < 6) return std::nullopt;
     return c + 2.0 * r;
   });
-  const Terrain terrain = support::raster_terrain(heights, 100, 100);
+  const Terrain terrain = support::voided_terrain(heights, 100, 100);
   const auto box = *terrain.bounds();
   std::uniform_int_distribution<std::int32_t> x(box.min.x - 50, box.max.x + 50), y(box.min.y - 50, box.max.y + 50);
   ElevationQuery query(terrain, Voids::kKeep);
@@ -156,9 +155,11 @@ TEST(ProfileTest, HasGapsOverVoidsWhereElevationsHave) {
       const ProfilePoint &a = found[k - 1], &b = found[k];
       if (b.distance - a.distance < 8) continue;  // the query's position is rounded to the lattice
       const Point middle{static_cast<std::int32_t>(std::lround((a.at.x + b.at.x) / 2)), static_cast<std::int32_t>(std::lround((a.at.y + b.at.y) / 2))};
+      const auto near_border = [](std::int32_t v) { return (v + 100'052) % 100 <= 4; };  // cells meet at 50, 150 ...
+      if (near_border(middle.x) || near_border(middle.y)) continue;
       EXPECT_EQ(a.z.has_value(), query.at(middle).has_value()) << middle.x << ' ' << middle.y;
       if (!a.z) ++gaps;
-      if (a.z) ASSERT_TRUE(b.z.has_value()) << "the surface reaches up to the gap's edge";
+      if (a.z) { ASSERT_TRUE(b.z.has_value()) << "the surface reaches up to the gap's edge"; }
     }
   }
   EXPECT_GT(gaps, 20);
@@ -173,9 +174,9 @@ TEST(ProfileTest, MeasuresGeodesicsOnTheEllipsoid) {
   const Terrain terrain = *Terrain::build(frame, placements, tin::terrain::Duplicates::kReject);
   const tin::frame::Ground ground(frame, {.geographic = true});
   const std::vector<Point> equator{{0, 0}, {4'000'000, 0}}, meridian{{0, 0}, {0, 4'000'000}};
-  // One degree of the equator is 111319.4908 m; the meridian's arc from 0 to 4 degrees is 442308.5 m (WGS84).
+  // One degree of the equator is 111319.4908 m; the meridian's arc from 0 to 4 degrees is 442304.312 m (WGS84).
   EXPECT_NEAR(profile(terrain, ground, equator, Voids::kKeep, kMany)->back().distance, 4 * 111319.4908, 0.01);
-  EXPECT_NEAR(profile(terrain, ground, meridian, Voids::kKeep, kMany)->back().distance, 442308.5, 1);
+  EXPECT_NEAR(profile(terrain, ground, meridian, Voids::kKeep, kMany)->back().distance, 442304.312, 0.1);
 }
 
 TEST(ProfileTest, DoesNotDependOnTheHistory) {
@@ -205,7 +206,7 @@ TEST(ProfileTest, OfDegenerateTerrainsHasTheirVertices) {
   for (const auto& [name, terrain] : support::degenerate_terrains()) {
     for (const auto& line : {std::vector<Point>{{0, 0}, {24, 0}}, {{24, -16}, {0, 0}}, {{4, 7}, {4, 7}}, {{0, 0}, {10, 20}}, {{-5, 5}, {9, 9}}}) {
       for (const ProfilePoint& f : profile_of(terrain, line)) {
-        if (f.z) EXPECT_NEAR(*f.z, 3 + 0.25 * f.at.x - 0.5 * f.at.y, 1e-9) << name;
+        if (f.z) { EXPECT_NEAR(*f.z, 3 + 0.25 * f.at.x - 0.5 * f.at.y, 1e-9) << name; }
       }
     }
   }

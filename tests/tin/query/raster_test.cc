@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "tests/tin/query/analytic.h"
-#include "tests/tin/simplify/terrains.h"
 #include "tin/mesh/validate.h"
 #include "tin/query/elevation.h"
 
@@ -98,7 +97,7 @@ TEST(RasterTest, EqualsTheQueriesWhereVoidsAre) {
   support::Random random(support::seed());
   SCOPED_TRACE("TINSMITH_SEED=" + std::to_string(support::seed()));
   for (const auto& [name, heights] : support::hard_rasters(random, 14)) {
-    Terrain terrain = support::raster_terrain(heights);
+    Terrain terrain = support::voided_terrain(heights, 7, 11);
     expect_as_queried(terrain, over(terrain, 90, true), Voids::kKeep, name);
     expect_as_queried(terrain, over(terrain, 31, true), Voids::kFill, name);
     const auto box = *terrain.bounds();
