@@ -15,6 +15,7 @@
 #include "server/api/routes.h"
 #include "server/app/version.h"
 #include "tin/frame/ground.h"
+#include "tin/query/contour.h"
 #include "tin/query/region.h"
 
 namespace server::api {
