@@ -39,16 +39,6 @@ double Shade::operator()(Gradient g) const {
   return std::max(0.0, (x * east_ + y * north_ + up_) / std::sqrt(x * x + y * y + 1));
 }
 
-Gradient GradientQuery::on_ground(double dz_dx, double dz_dy, double y) const {
-  const frame::StepLengths step = ground_.steps_at(y);
-  return {dz_dx * ground_.vertical_m() / step.x, dz_dy * ground_.vertical_m() / step.y};
-}
-
-Gradient GradientQuery::of(TriangleSlot t, double y) const {
-  const Facet facet(terrain_, canonical_corners(terrain_.mesh(), t));
-  return on_ground(facet.dz_dx(), facet.dz_dy(), y);
-}
-
 Gradient GradientQuery::at_vertex(VertexSlot v) const {
   const auto& mesh = terrain_.mesh();
   std::vector<mesh::HalfEdge> link;
@@ -67,7 +57,7 @@ Gradient GradientQuery::at_vertex(VertexSlot v) const {
     dz_dy += area * facet.dz_dy();
     areas += area;
   }
-  return on_ground(dz_dx / areas, dz_dy / areas, mesh.point(v).y);
+  return gradient_on_ground(dz_dx / areas, dz_dy / areas, ground_.steps_at(mesh.point(v).y), ground_.vertical_m());
 }
 
 std::optional<Gradient> GradientQuery::at(Point p) {
@@ -81,7 +71,8 @@ std::optional<Gradient> GradientQuery::at(Point p) {
   if (where.kind == Location::Kind::kOnVertex) return at_vertex(where.vertex);
   const TriangleSlot t = answering_triangle(mesh, where);
   if (voids_.any() && voids_.in_void_cell(p) && voids_.may_touch(mesh.triangle(t).vertices)) return std::nullopt;
-  return of(t, p.y);
+  const Facet facet(terrain_, canonical_corners(mesh, t));
+  return gradient_on_ground(facet.dz_dx(), facet.dz_dy(), ground_.steps_at(p.y), ground_.vertical_m());
 }
 
 }  // namespace tin::query

@@ -40,6 +40,11 @@ class Shade {
   double east_, north_, up_, exaggeration_;
 };
 
+/// From rises per lattice step, where steps have these lengths.
+inline Gradient gradient_on_ground(double dz_dx, double dz_dy, frame::StepLengths step, double vertical_m) {
+  return {dz_dx * vertical_m / step.x, dz_dy * vertical_m / step.y};
+}
+
 /// Gradients at lattice points. Borrows terrain and ground. One thread.
 class GradientQuery {
  public:
@@ -52,11 +57,7 @@ class GradientQuery {
   std::optional<Gradient> at(exact::Point p);
   /// At a vertex. Requires: dimension 2. Cost: its degree.
   Gradient at_vertex(mesh::VertexSlot v) const;
-  /// Of a triangle at lattice ordinate `y` (degrees of longitude shrink towards the poles).
-  Gradient of(mesh::TriangleSlot t, double y) const;
-
  private:
-  Gradient on_ground(double dz_dx, double dz_dy, double y) const;
 
   const terrain::Terrain& terrain_;
   VoidMask voids_;

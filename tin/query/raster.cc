@@ -49,9 +49,10 @@ std::size_t Rasteriser::Ordinates::first_from(double bound) const {
 /// A triangle on its way through the rows.
 struct Rasteriser::Scan {
   Scan(const terrain::Terrain& terrain, TriangleSlot t)
-      : triangle(t), corners(canonical_corners(terrain.mesh(), t)) {
-    const mesh::Mesh& mesh = terrain.mesh();
-    for (std::size_t i = 0; i < 3; ++i) at[i] = mesh.point(corners[i]);
+      : triangle(t),
+        corners(canonical_corners(terrain.mesh(), t)),
+        facet(terrain, corners),
+        at{facet.a(), facet.b(), facet.c()} {
     low = std::min({at[0].y, at[1].y, at[2].y});
     high = std::max({at[0].y, at[1].y, at[2].y});
   }
@@ -66,10 +67,12 @@ struct Rasteriser::Scan {
 
   TriangleSlot triangle;
   Slots corners;
+  Facet facet;
   std::array<Point, 3> at;
   std::int32_t low, high;
   std::array<int, 3> known{};
   bool may_be_void = false;
+  double dz_dx = 0, dz_dy = 0;  // for gradients
 };
 
 Rasteriser::Rasteriser(const terrain::Terrain& terrain, PixelCentres centres, const RasterOptions& options,
@@ -82,6 +85,7 @@ Rasteriser::Rasteriser(const terrain::Terrain& terrain, PixelCentres centres, co
       voids_mode_(options.voids),
       nodata_(nodata),
       voids_(terrain, options.voids),
+      ground_(options.ground),
       shade_(options.sun),
       strip_rows_(rows_per_strip(x_.size())),
       strips_((y_.size() + strip_rows_ - 1) / strip_rows_) {
@@ -163,6 +167,8 @@ void Rasteriser::make_strip(std::size_t strip) {
   strip_begin_ = y_.reversed() ? y_.size() - end : begin;
   strip_end_ = y_.reversed() ? y_.size() - begin : end;
   strip_.assign((end - begin) * x_.size(), nodata_);
+  steps_.clear();
+  for (std::size_t r = strip_begin_; gradient_ && r < strip_end_; ++r) steps_.push_back(ground_->steps_at(y_[r]));
   if (mesh_.dimension() < 2) return paint_line();
   const auto bucket = [strip](const std::vector<std::size_t>& begins, const std::vector<std::uint32_t>& items) {
     return std::span(items).subspan(begins[strip], begins[strip + 1] - begins[strip]);
@@ -177,6 +183,10 @@ void Rasteriser::make_strip(std::size_t strip) {
 bool Rasteriser::paint(TriangleSlot t) {
   Scan scan(terrain_, t);
   scan.may_be_void = voids_.may_touch(scan.corners);
+  if (gradient_) {
+    scan.dz_dx = scan.facet.dz_dx();
+    scan.dz_dy = scan.facet.dz_dy();
+  }
   std::size_t row = std::max(y_.first_from(scan.low), strip_begin_);
   for (; row < strip_end_ && y_[row] <= scan.high; ++row) {
     std::size_t first = 0, end = x_.size();
@@ -219,9 +229,10 @@ void Rasteriser::cut(Scan& scan, std::size_t i, std::int32_t y, std::size_t& fir
 void Rasteriser::paint_span(const Scan& scan, std::size_t row, std::size_t first, std::size_t end) {
   double* out = at(row, first);
   if (layer_ == RasterLayer::kElevation) {
-    Facet(terrain_, scan.corners).z_along(y_[row], {x_.doubles() + first, end - first}, out);
+    scan.facet.z_along(y_[row], {x_.doubles() + first, end - first}, out);
   } else {
-    std::fill_n(out, end - first, layer_value(layer_, gradient_->of(scan.triangle, y_[row]), shade_));
+    const Gradient g = gradient_on_ground(scan.dz_dx, scan.dz_dy, steps_[row - strip_begin_], ground_->vertical_m());
+    std::fill_n(out, end - first, layer_value(layer_, g, shade_));
   }
 }
 

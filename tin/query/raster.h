@@ -91,6 +91,7 @@ class Rasteriser {
   const Voids voids_mode_;
   const double nodata_;
   VoidMask voids_;
+  const frame::Ground* ground_;
   std::optional<GradientQuery> gradient_;  // but for elevations
   Shade shade_;
 
@@ -103,6 +104,7 @@ class Rasteriser {
   std::size_t next_strip_ = 0;
   std::size_t strip_begin_ = 0, strip_end_ = 0;  // the rows in strip_
   std::vector<double> strip_;
+  std::vector<frame::StepLengths> steps_;  // by row of the strip; for gradients
 };
 
 }  // namespace tin::query

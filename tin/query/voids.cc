@@ -18,6 +18,19 @@ bool VoidMask::is_void_cell(double column, double row) const {
   return !grid_->is_valid(static_cast<std::int32_t>(column), static_cast<std::int32_t>(row));
 }
 
+/// Of the cells first..last of a row: whether one is void.
+bool VoidMask::any_void(std::size_t row, std::size_t first, std::size_t last) const {
+  const auto width = static_cast<std::size_t>(grid_->width);
+  const std::size_t begin = row * width + first, end = row * width + last + 1;  // bits
+  for (std::size_t at = begin; at < end;) {
+    const std::size_t bit = at % 64, count = std::min<std::size_t>(64 - bit, end - at);
+    const std::uint64_t ones = count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+    if (((grid_->valid[at / 64] >> bit) & ones) != ones) return true;
+    at += count;
+  }
+  return false;
+}
+
 bool VoidMask::in_void_cell(Point p) const {
   const auto cell = grid_->cell_at(p);
   return cell && !grid_->is_valid(cell->column, cell->row);
@@ -36,11 +49,13 @@ bool VoidMask::may_touch(std::span<const mesh::VertexSlot> corners) const {
     low_r = std::min(low_r, r);
     high_r = std::max(high_r, r);
   }
-  const double last_c = std::min(high_c, grid_->width - 1.0), last_r = std::min(high_r, grid_->height - 1.0);
-  for (double r = std::max(low_r, 0.0); r <= last_r; ++r) {
-    for (double c = std::max(low_c, 0.0); c <= last_c; ++c) {
-      if (is_void_cell(c, r)) return true;
-    }
+  low_c = std::max(low_c, 0.0);
+  low_r = std::max(low_r, 0.0);
+  high_c = std::min(high_c, grid_->width - 1.0);
+  high_r = std::min(high_r, grid_->height - 1.0);
+  if (low_c > high_c) return false;
+  for (double r = low_r; r <= high_r; ++r) {
+    if (any_void(static_cast<std::size_t>(r), static_cast<std::size_t>(low_c), static_cast<std::size_t>(high_c))) return true;
   }
   return false;
 }

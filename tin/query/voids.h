@@ -31,7 +31,7 @@ class VoidMask {
   /// Whether there are voids at all.
   bool any() const { return grid_ != nullptr; }
   /// Whether the triangle (or edge) of these corners may hold positions that are void. Cost: the cells of its bounding box
-  /// at worst.
+  /// at worst, 64 at a time.
   bool may_touch(std::span<const mesh::VertexSlot> corners) const;
   /// Whether the cell that holds `p` is void. Requires: any().
   bool in_void_cell(exact::Point p) const;
@@ -48,6 +48,7 @@ class VoidMask {
   double x_at(double column) const { return grid_->x0 + (column - 0.5) * grid_->dx; }
   double y_at(double row) const { return grid_->y0 + (row - 0.5) * grid_->dy; }
   bool is_void_cell(double column, double row) const;
+  bool any_void(std::size_t row, std::size_t first, std::size_t last) const;
   void solid_in_row(const Convex& band, double row, std::vector<Convex>& out) const;
 
   const terrain::Terrain& terrain_;
