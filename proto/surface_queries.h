@@ -67,8 +67,8 @@ struct VolumeInputs {
   Manner manner;
 };
 
-/// Members of a JSON object that is the question (or has it among others, which are not looked at). Errors: kMalformed,
-/// kNotFinite, kInvalidValue, kTooLarge.
+/// Members of a JSON object that is the question (or has it among others, which are not looked at). Errors:
+/// kMalformed, kNotFinite, kInvalidValue, kTooLarge.
 tin::base::Result<PositionsInputs> read_positions_inputs(const Object& object, std::size_t max_positions);
 tin::base::Result<SightInputs> read_sight_inputs(const Object& object);
 tin::base::Result<ContourInputs> read_contour_inputs(const Object& object, std::size_t max_levels);
@@ -76,7 +76,8 @@ tin::base::Result<AreaInputs> read_area_inputs(const Object& object, std::size_t
 tin::base::Result<VolumeInputs> read_volume_inputs(const Object& object, std::size_t max_positions);
 
 /// Checks that hold for GET as well. Errors: kInvalidValue at `where` + the member's name.
-tin::base::Result<void> check_contour_inputs(const ContourInputs& inputs, std::size_t max_levels, const std::string& where);
+tin::base::Result<void> check_contour_inputs(const ContourInputs& inputs, std::size_t max_levels,
+                                             const std::string& where);
 tin::base::Result<void> check_sight_inputs(const SightInputs& inputs, const std::string& where);
 
 // Answers -------------------------------------------------------------------------
@@ -88,17 +89,20 @@ struct Units {
 };
 
 std::string slope_json(const std::optional<tin::query::Gradient>& gradient, std::uint64_t revision);
-std::string slopes_json(std::span<const std::optional<tin::query::Gradient>> gradients, std::uint64_t revision);
+std::string slopes_json(std::span<const std::optional<tin::query::Gradient>> gradients,
+                        std::uint64_t revision);
 
 /// Positions in the CRS asked for, one for each point.
 std::string profile_json(std::span<const tin::query::ProfilePoint> points, std::span<const Position2> at,
                          const Units& units, std::uint64_t revision);
 /// `closest` and `blocked` in the CRS asked for.
-std::string sight_json(const tin::query::Sight& sight, Position2 closest, std::optional<Position2> blocked, const Units& units,
-                       std::uint64_t revision);
-std::string volume_json(const tin::query::LevelVolumes& volumes, double level, const Units& units, std::uint64_t revision);
-std::string surface_area_json(const tin::query::SurfaceArea& area, const Units& units, std::uint64_t revision);
-std::string cut_fill_json(const tin::query::CutFill& volumes, const Units& units, std::uint64_t revision, std::string_view after,
-                          std::uint64_t after_revision);
+std::string sight_json(const tin::query::Sight& sight, Position2 closest, std::optional<Position2> blocked,
+                       const Units& units, std::uint64_t revision);
+std::string volume_json(const tin::query::LevelVolumes& volumes, double level, const Units& units,
+                        std::uint64_t revision);
+std::string surface_area_json(const tin::query::SurfaceArea& area, const Units& units,
+                              std::uint64_t revision);
+std::string cut_fill_json(const tin::query::CutFill& volumes, const Units& units, std::uint64_t revision,
+                          std::string_view after, std::uint64_t after_revision);
 
 }  // namespace proto

@@ -64,13 +64,15 @@ class Reader {
     with(name, [&](Value member) {
       const auto array = member.array(std::numeric_limits<std::size_t>::max());
       if (!array) return fail(array.error());
-      if (array->size() != 4) return fail(member.error(Code::kMalformed, "here must be 4 numbers: minx, miny, maxx, maxy"));
+      if (array->size() != 4)
+        return fail(member.error(Code::kMalformed, "here must be 4 numbers: minx, miny, maxx, maxy"));
       std::array<double, 4> v{};
       std::size_t i = 0;
       for (const Value item : *array) {
         if (!take(item.number(), v[i++])) return;
       }
-      if (v[0] > v[2] || v[1] > v[3]) return fail(member.error(Code::kInvalidValue, "a minimum is above its maximum"));
+      if (v[0] > v[2] || v[1] > v[3])
+        return fail(member.error(Code::kInvalidValue, "a minimum is above its maximum"));
       out = Bbox{v[0], v[1], v[2], v[3], std::nullopt, std::nullopt};
     });
   }
@@ -90,7 +92,9 @@ class Reader {
     polygon("polygon", out.polygon, most);
     box("bbox", out.box);
     if (!out.polygon.empty() && out.box) {
-      with("bbox", [&](Value member) { fail(member.error(Code::kInvalidValue, "either a polygon or a bbox, not both")); });
+      with("bbox", [&](Value member) {
+        fail(member.error(Code::kInvalidValue, "either a polygon or a bbox, not both"));
+      });
     }
   }
   std::optional<Value> find(std::string_view name) const { return object_.find(name); }
@@ -129,7 +133,8 @@ class Reader {
     const auto array = value.array(std::numeric_limits<std::size_t>::max());
     if (!array) return fail(array.error());
     if (array->size() != 2) {
-      return fail(value.error(Code::kMalformed, "here must be 2 numbers, not " + std::to_string(array->size())));
+      return fail(
+          value.error(Code::kMalformed, "here must be 2 numbers, not " + std::to_string(array->size())));
     }
     double* to[] = {&out.x, &out.y};
     std::size_t i = 0;
@@ -160,7 +165,8 @@ class Reader {
 
 }  // namespace
 
-Result<std::vector<Position2>> parse_positions(std::string_view text, std::size_t max_positions, std::string where) {
+Result<std::vector<Position2>> parse_positions(std::string_view text, std::size_t max_positions,
+                                               std::string where) {
   std::vector<Position2> out;
   std::vector<double> pair;
   while (true) {
@@ -170,7 +176,8 @@ Result<std::vector<Position2>> parse_positions(std::string_view text, std::size_
     pair.push_back(*number);
     if (pair.size() == 2) {
       if (out.size() == max_positions) {
-        return error(Code::kTooLarge, "There may be " + std::to_string(max_positions) + " positions at most.", std::move(where));
+        return error(Code::kTooLarge, "There may be " + std::to_string(max_positions) + " positions at most.",
+                     std::move(where));
       }
       out.push_back({pair[0], pair[1]});
       pair.clear();
@@ -178,7 +185,8 @@ Result<std::vector<Position2>> parse_positions(std::string_view text, std::size_
     if (comma == text.size()) break;
     text.remove_prefix(comma + 1);
   }
-  if (!pair.empty()) return error(Code::kMalformed, "Positions are pairs of numbers: x,y,x,y,...", std::move(where));
+  if (!pair.empty())
+    return error(Code::kMalformed, "Positions are pairs of numbers: x,y,x,y,...", std::move(where));
   return out;
 }
 
@@ -222,9 +230,11 @@ Result<ContourInputs> read_contour_inputs(const Object& object, std::size_t max_
   return reader.result(std::move(inputs));
 }
 
-Result<void> check_contour_inputs(const ContourInputs& inputs, std::size_t max_levels, const std::string& where) {
+Result<void> check_contour_inputs(const ContourInputs& inputs, std::size_t max_levels,
+                                  const std::string& where) {
   if (inputs.levels.size() > max_levels) {
-    return error(Code::kTooLarge, "There may be " + std::to_string(max_levels) + " levels at most.", where + "levels");
+    return error(Code::kTooLarge, "There may be " + std::to_string(max_levels) + " levels at most.",
+                 where + "levels");
   }
   if (inputs.interval.has_value() == !inputs.levels.empty()) {
     return error(Code::kInvalidValue, "Contours need either an interval or levels.", where + "interval");

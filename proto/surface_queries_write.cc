@@ -4,18 +4,28 @@ namespace proto {
 
 namespace {
 
-void write_or_null(JsonWriter& json, std::optional<double> value) { value ? json.number(*value) : json.null(); }
+void write_or_null(JsonWriter& json, std::optional<double> value) {
+  value ? json.number(*value) : json.null();
+}
 
-void write_position(JsonWriter& json, Position2 p) { json.begin_array().number(p.x).number(p.y).end_array(); }
+void write_position(JsonWriter& json, Position2 p) {
+  json.begin_array().number(p.x).number(p.y).end_array();
+}
 
 void write_vertical(JsonWriter& json, const Units& units) {
   json.key("verticalUnit");
   units.vertical.empty() ? json.null() : json.string(units.vertical);
 }
 
-std::string_view length(const Units& units) { return units.metres ? "m" : "unit"; }
-std::string_view area(const Units& units) { return units.metres ? "m2" : "unit2"; }
-std::string_view volume(const Units& units) { return units.metres ? "m3" : "unit3"; }
+std::string_view length(const Units& units) {
+  return units.metres ? "m" : "unit";
+}
+std::string_view area(const Units& units) {
+  return units.metres ? "m2" : "unit2";
+}
+std::string_view volume(const Units& units) {
+  return units.metres ? "m3" : "unit3";
+}
 
 std::optional<double> slope_of(const std::optional<tin::query::Gradient>& g) {
   return g ? std::optional(tin::query::slope_degrees(*g)) : std::nullopt;
@@ -45,7 +55,8 @@ std::string slope_json(const std::optional<tin::query::Gradient>& gradient, std:
   return json.take();
 }
 
-std::string slopes_json(std::span<const std::optional<tin::query::Gradient>> gradients, std::uint64_t revision) {
+std::string slopes_json(std::span<const std::optional<tin::query::Gradient>> gradients,
+                        std::uint64_t revision) {
   JsonWriter json;
   json.begin_object();
   json.key("slope").begin_array();
@@ -60,8 +71,8 @@ std::string slopes_json(std::span<const std::optional<tin::query::Gradient>> gra
   return json.take();
 }
 
-std::string profile_json(std::span<const tin::query::ProfilePoint> points, std::span<const Position2> at, const Units& units,
-                         std::uint64_t revision) {
+std::string profile_json(std::span<const tin::query::ProfilePoint> points, std::span<const Position2> at,
+                         const Units& units, std::uint64_t revision) {
   JsonWriter json;
   json.begin_object();
   json.key("distance").begin_array();
@@ -81,8 +92,8 @@ std::string profile_json(std::span<const tin::query::ProfilePoint> points, std::
   return json.take();
 }
 
-std::string sight_json(const tin::query::Sight& sight, Position2 closest, std::optional<Position2> blocked, const Units& units,
-                       std::uint64_t revision) {
+std::string sight_json(const tin::query::Sight& sight, Position2 closest, std::optional<Position2> blocked,
+                       const Units& units, std::uint64_t revision) {
   JsonWriter json;
   const auto point = [&json](const tin::query::SightPoint& p, Position2 at) {
     json.begin_object();
@@ -110,7 +121,8 @@ std::string sight_json(const tin::query::Sight& sight, Position2 closest, std::o
   return json.take();
 }
 
-std::string volume_json(const tin::query::LevelVolumes& volumes, double level, const Units& units, std::uint64_t revision) {
+std::string volume_json(const tin::query::LevelVolumes& volumes, double level, const Units& units,
+                        std::uint64_t revision) {
   JsonWriter json;
   json.begin_object();
   json.key("level").number(level);
@@ -126,7 +138,8 @@ std::string volume_json(const tin::query::LevelVolumes& volumes, double level, c
   return json.take();
 }
 
-std::string surface_area_json(const tin::query::SurfaceArea& found, const Units& units, std::uint64_t revision) {
+std::string surface_area_json(const tin::query::SurfaceArea& found, const Units& units,
+                              std::uint64_t revision) {
   JsonWriter json;
   json.begin_object();
   json.key("planarArea").number(found.planar);
@@ -137,8 +150,8 @@ std::string surface_area_json(const tin::query::SurfaceArea& found, const Units&
   return json.take();
 }
 
-std::string cut_fill_json(const tin::query::CutFill& volumes, const Units& units, std::uint64_t revision, std::string_view after,
-                          std::uint64_t after_revision) {
+std::string cut_fill_json(const tin::query::CutFill& volumes, const Units& units, std::uint64_t revision,
+                          std::string_view after, std::uint64_t after_revision) {
   JsonWriter json;
   json.begin_object();
   json.key("cutVolume").number(volumes.cut_volume);

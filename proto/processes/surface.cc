@@ -296,7 +296,8 @@ Result<AboutTin<PositionsInputs>> read_profile_process(const Value& inputs, std:
 
 Result<AboutTin<SightInputs>> read_line_of_sight_process(const Value& inputs) {
   return read_about(inputs,
-                    {"tin", "observer", "target", "observerHeight", "targetHeight", "curvature", "refraction", "crs", "voids"},
+                    {"tin", "observer", "target", "observerHeight", "targetHeight", "curvature", "refraction",
+                     "crs", "voids"},
                     [](const Object& object) { return read_sight_inputs(object); });
 }
 

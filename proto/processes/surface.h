@@ -1,5 +1,5 @@
-// The processes that ask about a TIN's surface: contours, volume, cut-fill, surface-area, profile and line-of-sight. Their
-// inputs are those of proto/surface_queries.h and the TIN's id.
+// The processes that ask about a TIN's surface: contours, volume, cut-fill, surface-area, profile and
+// line-of-sight. Their inputs are those of proto/surface_queries.h and the TIN's id.
 #pragma once
 
 #include <string>
@@ -31,8 +31,10 @@ struct CutFillInputs {
 tin::base::Result<AboutTin<ContourInputs>> read_contours_process(const Value& inputs, std::size_t max_levels);
 tin::base::Result<AboutTin<VolumeInputs>> read_volume_process(const Value& inputs, std::size_t max_positions);
 tin::base::Result<CutFillInputs> read_cut_fill_process(const Value& inputs, std::size_t max_positions);
-tin::base::Result<AboutTin<AreaInputs>> read_surface_area_process(const Value& inputs, std::size_t max_positions);
-tin::base::Result<AboutTin<PositionsInputs>> read_profile_process(const Value& inputs, std::size_t max_positions);
+tin::base::Result<AboutTin<AreaInputs>> read_surface_area_process(const Value& inputs,
+                                                                  std::size_t max_positions);
+tin::base::Result<AboutTin<PositionsInputs>> read_profile_process(const Value& inputs,
+                                                                  std::size_t max_positions);
 tin::base::Result<AboutTin<SightInputs>> read_line_of_sight_process(const Value& inputs);
 
 }  // namespace proto

@@ -82,7 +82,8 @@ bool ContourFile::next(std::string& out, std::size_t* positions) {
 }
 
 Result<std::string> contours_answer(const app::Version& version, const proto::ContourInputs& inputs,
-                                    const LimitConfig& limits, const std::string& where, tin::base::Progress* progress) {
+                                    const LimitConfig& limits, const std::string& where,
+                                    tin::base::Progress* progress) {
   auto file = ContourFile::begin(version, inputs, limits, where);
   if (!file) return file.error();
   std::string out;
@@ -90,7 +91,8 @@ Result<std::string> contours_answer(const app::Version& version, const proto::Co
   while (file->next(out, &positions)) {
     if (positions > static_cast<std::size_t>(limits.answer_positions)) {
       return error(Code::kTooLarge, "The contours have more than " + std::to_string(limits.answer_positions) +
-                                        " positions, the limit here: ask for a smaller box or fewer levels, or for the stream at /contours.");
+                                        " positions, the limit here: ask for a smaller box or fewer levels, "
+                                        "or for the stream at /contours.");
     }
     if (progress == nullptr) continue;
     progress->report(file->fraction());
@@ -126,7 +128,9 @@ Result<std::vector<double>> levels_of(const Request& request, std::size_t most) 
     const auto level = proto::parse_number(rest.substr(0, comma), "query:levels");
     if (!level) return level.error();
     out.push_back(*level);
-    if (out.size() > most) return error(Code::kTooLarge, "There may be " + std::to_string(most) + " levels at most.", "query:levels");
+    if (out.size() > most)
+      return error(Code::kTooLarge, "There may be " + std::to_string(most) + " levels at most.",
+                   "query:levels");
     if (comma == rest.size()) return out;
     rest.remove_prefix(comma + 1);
   }
@@ -148,7 +152,8 @@ Result<proto::ContourInputs> inputs_of(const Request& request, const LimitConfig
   if (const auto text = request.query_value("bbox")) {
     const auto box = proto::parse_bbox(*text, "query:bbox");
     if (!box) return box.error();
-    if (box->min_z) return error(Code::kInvalidValue, "The box is one of positions: four numbers.", "query:bbox");
+    if (box->min_z)
+      return error(Code::kInvalidValue, "The box is one of positions: four numbers.", "query:bbox");
     inputs.box = *box;
   }
   const auto manner = manner_of(request);

@@ -42,7 +42,8 @@ Result<Response> profile_of_many(Context& context, const Request& request) {
   const auto object = document->root().object({"positions", "crs", "voids"});
   if (!object) return object.error();
   const auto& limits = context.config.limits;
-  const auto inputs = proto::read_positions_inputs(*object, static_cast<std::size_t>(limits.positions_per_request));
+  const auto inputs =
+      proto::read_positions_inputs(*object, static_cast<std::size_t>(limits.positions_per_request));
   if (!inputs) return inputs.error();
   const app::Version version = (*tin)->version();
   return tagged(profile_answer(version, *inputs, limits, "/"), **tin, version.revision, request);
@@ -68,7 +69,8 @@ Result<proto::SightInputs> sight_inputs(const Request& request) {
   if (!observer) return observer.error();
   if (!target) return target.error();
   proto::SightInputs inputs;
-  const auto observer_height = number_or(request, "observer-height", 0), target_height = number_or(request, "target-height", 0);
+  const auto observer_height = number_or(request, "observer-height", 0),
+             target_height = number_or(request, "target-height", 0);
   if (!observer_height) return observer_height.error();
   if (!target_height) return target_height.error();
   const auto refraction = number_or(request, "refraction", inputs.refraction);
@@ -88,7 +90,8 @@ Result<Response> line_of_sight(Context& context, const Request& request) {
   const auto inputs = sight_inputs(request);
   if (!inputs) return inputs.error();
   const app::Version version = (*tin)->version();
-  return tagged(sight_answer(version, *inputs, context.config.limits, "query:"), **tin, version.revision, request);
+  return tagged(sight_answer(version, *inputs, context.config.limits, "query:"), **tin, version.revision,
+                request);
 }
 
 }  // namespace
@@ -100,13 +103,15 @@ void add_profile(http::Router& router, Context& context) {
               .pattern = pattern,
               .query = {"coords", "crs", "voids"},
               .handler = guarded([&context](Request& request) { return profile(context, request); })});
-  router.add({.method = Method::kPost,
-              .pattern = pattern,
-              .body = http::BodyKind::kMemory,
-              .handler = guarded([&context](Request& request) { return profile_of_many(context, request); })});
+  router.add(
+      {.method = Method::kPost,
+       .pattern = pattern,
+       .body = http::BodyKind::kMemory,
+       .handler = guarded([&context](Request& request) { return profile_of_many(context, request); })});
   router.add({.method = Method::kGet,
               .pattern = "/tins/{tin}/line-of-sight",
-              .query = {"observer", "target", "observer-height", "target-height", "curvature", "refraction", "crs", "voids"},
+              .query = {"observer", "target", "observer-height", "target-height", "curvature", "refraction",
+                        "crs", "voids"},
               .handler = guarded([&context](Request& request) { return line_of_sight(context, request); })});
 }
 

@@ -1,9 +1,8 @@
 // /tins/{tin}/slope: how steep the surface is and where it faces, at one position by GET, at many by POST.
-#include "tin/query/gradient.h"
-
 #include "server/api/answer.h"
 #include "server/api/routes.h"
 #include "server/api/surface_work.h"
+#include "tin/query/gradient.h"
 
 namespace server::api {
 
@@ -13,7 +12,8 @@ using tin::terrain::Terrain;
 
 namespace {
 
-Result<std::vector<std::optional<Gradient>>> gradients(const Terrain& terrain, const proto::PositionsInputs& inputs,
+Result<std::vector<std::optional<Gradient>>> gradients(const Terrain& terrain,
+                                                       const proto::PositionsInputs& inputs,
                                                        const std::string& where) {
   const auto ground = ground_of(terrain);
   if (!ground) return ground.error();
@@ -21,7 +21,8 @@ Result<std::vector<std::optional<Gradient>>> gradients(const Terrain& terrain, c
   if (!positions) return positions.error();
   GradientQuery query(terrain, engine_voids(inputs.manner.voids), *ground);
   std::vector<std::optional<Gradient>> out;
-  for (const auto& at : positions->nearest(inputs.positions)) out.push_back(at ? query.at(*at) : std::nullopt);
+  for (const auto& at : positions->nearest(inputs.positions))
+    out.push_back(at ? query.at(*at) : std::nullopt);
   return out;
 }
 
@@ -52,8 +53,8 @@ Result<Response> many(Context& context, const Request& request) {
   if (!document) return document.error();
   const auto object = document->root().object({"positions", "crs", "voids"});
   if (!object) return object.error();
-  const auto inputs =
-      proto::read_positions_inputs(*object, static_cast<std::size_t>(context.config.limits.positions_per_request));
+  const auto inputs = proto::read_positions_inputs(
+      *object, static_cast<std::size_t>(context.config.limits.positions_per_request));
   if (!inputs) return inputs.error();
   const app::Version version = (*tin)->version();
   const auto found = gradients(*version.terrain, *inputs, "/");

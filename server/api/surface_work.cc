@@ -76,7 +76,8 @@ Result<std::vector<Point>> SurfacePositions::to_lattice(std::span<const proto::P
 
 Result<Point> SurfacePositions::to_lattice(proto::Position2 position, const std::string& where) {
   const auto at = nearest({&position, 1})[0];
-  if (!at) return error(Code::kOutsideLattice, "The position lies outside the area that this TIN can cover.", where);
+  if (!at)
+    return error(Code::kOutsideLattice, "The position lies outside the area that this TIN can cover.", where);
   return *at;
 }
 
@@ -96,7 +97,8 @@ std::vector<proto::Position2> SurfacePositions::from_lattice(std::span<const Pla
 /// The sides of a box, counter-clockwise, in as many parts as its CRS asks for.
 std::vector<proto::Position2> SurfacePositions::outline(const proto::Bbox& box) const {
   const int parts = identity() ? 1 : 32;
-  const proto::Position2 corners[] = {{box.min_x, box.min_y}, {box.max_x, box.min_y}, {box.max_x, box.max_y}, {box.min_x, box.max_y}};
+  const proto::Position2 corners[] = {
+      {box.min_x, box.min_y}, {box.max_x, box.min_y}, {box.max_x, box.max_y}, {box.min_x, box.max_y}};
   std::vector<proto::Position2> out;
   for (int side = 0; side < 4; ++side) {
     const auto a = corners[side], b = corners[(side + 1) % 4];
@@ -108,7 +110,8 @@ std::vector<proto::Position2> SurfacePositions::outline(const proto::Bbox& box) 
   return out;
 }
 
-Result<std::optional<Region>> SurfacePositions::region(const proto::AreaOfInterest& area, const std::string& where) {
+Result<std::optional<Region>> SurfacePositions::region(const proto::AreaOfInterest& area,
+                                                       const std::string& where) {
   if (area.polygon.empty() && !area.box) return std::optional<Region>();
   std::vector<tin::query::Ring> rings;
   const std::string place = where + (area.box ? "bbox" : "polygon");
@@ -131,7 +134,8 @@ Result<tin::query::PlaceBox> SurfacePositions::box(const proto::Bbox& box, const
     y.push_back(p.y);
   }
   std::vector<std::uint8_t> ok;
-  if (!to_own_.convert(x, y, ok)) return error(Code::kInvalidValue, "The box cannot be converted to the TIN's CRS.", where + "bbox");
+  if (!to_own_.convert(x, y, ok))
+    return error(Code::kInvalidValue, "The box cannot be converted to the TIN's CRS.", where + "bbox");
   const auto [min_x, max_x] = std::minmax_element(x.begin(), x.end());
   const auto [min_y, max_y] = std::minmax_element(y.begin(), y.end());
   return tin::query::PlaceBox{{frame_->x.lattice(*min_x), frame_->y.lattice(*min_y)},
@@ -168,19 +172,22 @@ Result<proto::AreaOfInterest> area_of(const Request& request, const LimitConfig&
   if (const auto text = request.query_value("bbox")) {
     const auto box = proto::parse_bbox(*text, "query:bbox");
     if (!box) return box.error();
-    if (box->min_z) return error(Code::kInvalidValue, "The box is one of positions: four numbers.", "query:bbox");
+    if (box->min_z)
+      return error(Code::kInvalidValue, "The box is one of positions: four numbers.", "query:bbox");
     area.box = *box;
   }
   if (const auto text = request.query_value("polygon")) {
     if (area.box) return error(Code::kInvalidValue, "Either a polygon or a bbox, not both.", "query:polygon");
-    auto ring = proto::parse_positions(*text, static_cast<std::size_t>(limits.polygon_positions), "query:polygon");
+    auto ring =
+        proto::parse_positions(*text, static_cast<std::size_t>(limits.polygon_positions), "query:polygon");
     if (!ring) return ring.error();
     area.polygon.push_back(std::move(*ring));
   }
   return area;
 }
 
-Result<Response> tagged(Result<std::string> body, const app::Tin& tin, std::uint64_t revision, const Request& request) {
+Result<Response> tagged(Result<std::string> body, const app::Tin& tin, std::uint64_t revision,
+                        const Request& request) {
   if (!body) return body.error();
   Response response = json_answer(*std::move(body));
   response.headers.emplace_back("ETag", entity_tag(tin, revision, request));
@@ -205,8 +212,8 @@ Result<std::string> profile_answer(const app::Version& version, const proto::Pos
   return proto::profile_json(*points, positions->from_lattice(places), units_of(terrain), version.revision);
 }
 
-Result<std::string> sight_answer(const app::Version& version, const proto::SightInputs& inputs, const LimitConfig& limits,
-                                 const std::string& where) {
+Result<std::string> sight_answer(const app::Version& version, const proto::SightInputs& inputs,
+                                 const LimitConfig& limits, const std::string& where) {
   const Terrain& terrain = *version.terrain;
   const auto ground = ground_of(terrain);
   if (!ground) return ground.error();
@@ -216,17 +223,17 @@ Result<std::string> sight_answer(const app::Version& version, const proto::Sight
   if (!observer) return observer.error();
   const auto target = positions->to_lattice(inputs.target, where + "target");
   if (!target) return target.error();
-  const auto sight = tin::query::line_of_sight(
-      terrain, *ground,
-      {*observer, *target, inputs.observer_height, inputs.target_height, inputs.curvature, inputs.refraction,
-       engine_voids(inputs.manner.voids)},
-      static_cast<std::size_t>(limits.answer_positions));
+  const auto sight =
+      tin::query::line_of_sight(terrain, *ground,
+                                {*observer, *target, inputs.observer_height, inputs.target_height,
+                                 inputs.curvature, inputs.refraction, engine_voids(inputs.manner.voids)},
+                                static_cast<std::size_t>(limits.answer_positions));
   if (!sight) return within(where, sight.error());
   std::vector<Place> places{sight->closest.at};
   if (sight->blocked_at) places.push_back(sight->blocked_at->at);
   const auto at = positions->from_lattice(places);
-  return proto::sight_json(*sight, at[0], sight->blocked_at ? std::optional(at[1]) : std::nullopt, units_of(terrain),
-                           version.revision);
+  return proto::sight_json(*sight, at[0], sight->blocked_at ? std::optional(at[1]) : std::nullopt,
+                           units_of(terrain), version.revision);
 }
 
 namespace {
@@ -235,7 +242,9 @@ namespace {
 struct Plan {
   Ground ground;
   std::optional<Region> region;
-  tin::query::Where where(proto::Voids voids) const { return {region ? &*region : nullptr, engine_voids(voids)}; }
+  tin::query::Where where(proto::Voids voids) const {
+    return {region ? &*region : nullptr, engine_voids(voids)};
+  }
 };
 
 Result<Plan> plan_of(const Terrain& terrain, const proto::AreaOfInterest& area, const proto::Manner& manner,
@@ -251,8 +260,8 @@ Result<Plan> plan_of(const Terrain& terrain, const proto::AreaOfInterest& area, 
 
 }  // namespace
 
-Result<std::string> volume_answer(const app::Version& version, const proto::VolumeInputs& inputs, const std::string& where,
-                                  tin::base::Progress* progress) {
+Result<std::string> volume_answer(const app::Version& version, const proto::VolumeInputs& inputs,
+                                  const std::string& where, tin::base::Progress* progress) {
   const Terrain& terrain = *version.terrain;
   const auto plan = plan_of(terrain, inputs.area, inputs.manner, where);
   if (!plan) return plan.error();
@@ -267,14 +276,15 @@ Result<std::string> surface_area_answer(const app::Version& version, const proto
   const Terrain& terrain = *version.terrain;
   const auto plan = plan_of(terrain, inputs.area, inputs.manner, where);
   if (!plan) return plan.error();
-  const auto found = tin::query::surface_area(terrain, plan->ground, plan->where(inputs.manner.voids), progress);
+  const auto found =
+      tin::query::surface_area(terrain, plan->ground, plan->where(inputs.manner.voids), progress);
   if (!found) return found.error();
   return proto::surface_area_json(*found, units_of(terrain), version.revision);
 }
 
-Result<std::string> cut_fill_answer(const app::Version& before, const app::Version& after, std::string_view after_id,
-                                    const proto::AreaInputs& inputs, const std::string& where,
-                                    tin::base::Progress* progress) {
+Result<std::string> cut_fill_answer(const app::Version& before, const app::Version& after,
+                                    std::string_view after_id, const proto::AreaInputs& inputs,
+                                    const std::string& where, tin::base::Progress* progress) {
   const Terrain& terrain = *before.terrain;
   if (terrain.frame().crs != after.terrain->frame().crs) {
     return error(Code::kInvalidValue, "The two TINs are in different CRSs.", where + "after");

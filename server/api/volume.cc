@@ -11,7 +11,9 @@ using tin::base::error;
 namespace {
 
 /// These take all triangles into account: a bounded number at a time, beside the rasters.
-tin::base::Error busy() { return error(Code::kTooMany, "Too many long questions are being answered; try again."); }
+tin::base::Error busy() {
+  return error(Code::kTooMany, "Too many long questions are being answered; try again.");
+}
 
 Result<Response> volume(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
@@ -25,8 +27,8 @@ Result<Response> volume(Context& context, const Request& request) {
   const Slot slot(context.exports);
   if (!slot.taken()) return busy();
   const app::Version version = (*tin)->version();
-  return tagged(volume_answer(version, {*level, std::move(*area), *manner}, "query:", nullptr), **tin, version.revision,
-                request);
+  return tagged(volume_answer(version, {*level, std::move(*area), *manner}, "query:", nullptr), **tin,
+                version.revision, request);
 }
 
 Result<Response> surface_area(Context& context, const Request& request) {
@@ -39,7 +41,8 @@ Result<Response> surface_area(Context& context, const Request& request) {
   const Slot slot(context.exports);
   if (!slot.taken()) return busy();
   const app::Version version = (*tin)->version();
-  return tagged(surface_area_answer(version, {std::move(*area), *manner}, "query:", nullptr), **tin, version.revision, request);
+  return tagged(surface_area_answer(version, {std::move(*area), *manner}, "query:", nullptr), **tin,
+                version.revision, request);
 }
 
 }  // namespace

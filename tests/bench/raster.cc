@@ -1,4 +1,6 @@
 // tinsmith-bench raster: pixels per second, beside gdal_grid -a linear on the same points.
+#include "tin/query/raster.h"
+
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,7 +16,6 @@
 #include "tests/bench/commands.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/surface.h"
-#include "tin/query/raster.h"
 
 namespace bench {
 
@@ -71,7 +72,9 @@ Spent run(const std::vector<std::string>& words) {
   if (child < 0 || wait4(child, &status, 0, &used) != child || status != 0) {
     throw std::runtime_error(words[0] + " failed or is not installed");
   }
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  };
   return {watch.spent().wall_s, seconds(used.ru_utime), seconds(used.ru_stime)};
 }
 
@@ -86,10 +89,11 @@ class GdalGrid {
     csv << "x,y,z\n";
     csv.precision(17);
     for (const auto& v : terrain.vertices_by_id()) csv << v.at.x << ',' << v.at.y << ',' << v.z << '\n';
-    std::ofstream(folder_ / "points.vrt") << "<OGRVRTDataSource><OGRVRTLayer name=\"points\"><SrcDataSource>"
-                                          << (folder_ / "points.csv").string()
-                                          << "</SrcDataSource><GeometryType>wkbPoint</GeometryType><GeometryField "
-                                             "encoding=\"PointFromColumns\" x=\"x\" y=\"y\" z=\"z\"/></OGRVRTLayer></OGRVRTDataSource>";
+    std::ofstream(folder_ / "points.vrt")
+        << "<OGRVRTDataSource><OGRVRTLayer name=\"points\"><SrcDataSource>"
+        << (folder_ / "points.csv").string()
+        << "</SrcDataSource><GeometryType>wkbPoint</GeometryType><GeometryField "
+           "encoding=\"PointFromColumns\" x=\"x\" y=\"y\" z=\"z\"/></OGRVRTLayer></OGRVRTDataSource>";
   }
   ~GdalGrid() { std::filesystem::remove_all(folder_); }
   GdalGrid(const GdalGrid&) = delete;
@@ -100,10 +104,27 @@ class GdalGrid {
     const double half = grid.step / 2;
     const auto& [x, y] = grid.centres;
     const std::string pixels = std::to_string(size);
-    return run({"gdal_grid", "-q", "-a", "linear:radius=0:nodata=-9999", "-of", "ENVI", "-ot", "Float64", "-txe",
-                number(x.front() - half), number(x.front() - half + double(grid.step) * double(grid.centres.x.size())), "-tye",
-                number(y.front() + half), number(y.front() + half - double(grid.step) * double(grid.centres.y.size())), "-outsize",
-                pixels, pixels, "-l", "points", (folder_ / "points.vrt").string(), (folder_ / "out.bin").string()});
+    return run({"gdal_grid",
+                "-q",
+                "-a",
+                "linear:radius=0:nodata=-9999",
+                "-of",
+                "ENVI",
+                "-ot",
+                "Float64",
+                "-txe",
+                number(x.front() - half),
+                number(x.front() - half + double(grid.step) * double(grid.centres.x.size())),
+                "-tye",
+                number(y.front() + half),
+                number(y.front() + half - double(grid.step) * double(grid.centres.y.size())),
+                "-outsize",
+                pixels,
+                pixels,
+                "-l",
+                "points",
+                (folder_ / "points.vrt").string(),
+                (folder_ / "out.bin").string()});
   }
   std::vector<double> pixels(std::size_t count) const {
     std::vector<double> values(count);
@@ -133,18 +154,31 @@ void compare(const Terrain& terrain, const Grid& grid, double raster_s, double b
     largest = std::max(largest, std::abs(ours[i] - theirs[i]));
   }
   const double gridding = whole.cpu_s() - setup.cpu_s();
-  JsonLine("raster").add("who", "gdal_grid").add(whole, pixels).add("setup_cpu_s", setup.cpu_s()).add("pixels_per_s", static_cast<double>(pixels) / gridding).add("compared", static_cast<double>(compared)).add("largest_difference", largest).print();
-  JsonLine("raster").add("who", "ratio").add("pixels", gridding / raster_s).add("with_building", whole.cpu_s() / (raster_s + build_s)).print();
+  JsonLine("raster")
+      .add("who", "gdal_grid")
+      .add(whole, pixels)
+      .add("setup_cpu_s", setup.cpu_s())
+      .add("pixels_per_s", static_cast<double>(pixels) / gridding)
+      .add("compared", static_cast<double>(compared))
+      .add("largest_difference", largest)
+      .print();
+  JsonLine("raster")
+      .add("who", "ratio")
+      .add("pixels", gridding / raster_s)
+      .add("with_building", whole.cpu_s() / (raster_s + build_s))
+      .print();
 }
 
 }  // namespace
 
 int run_raster(std::span<const std::string> arguments) {
-  static constexpr std::string_view kOptions[] = {"--input", "--points", "--size", "--seed", "--repeats", "--peer"};
+  static constexpr std::string_view kOptions[] = {"--input", "--points",  "--size",
+                                                  "--seed",  "--repeats", "--peer"};
   const Arguments options(arguments, kOptions);
   const std::size_t size = options.number("--size", 4000), repeats = options.number("--repeats", 3);
   const Stopwatch building;
-  const Terrain terrain = wavy_terrain(options.text("--input", "uniform"), options.number("--points", 1'000'000), options.number("--seed", 1));
+  const Terrain terrain = wavy_terrain(options.text("--input", "uniform"),
+                                       options.number("--points", 1'000'000), options.number("--seed", 1));
   const double build_s = building.spent().cpu_s();
   const Grid grid(terrain, size);
   double best = 0;
@@ -154,7 +188,16 @@ int run_raster(std::span<const std::string> arguments) {
     const double sum = rasterise(terrain, grid, nullptr);
     const Spent spent = watch.spent();
     best = i == 0 ? spent.cpu_s() : std::min(best, spent.cpu_s());
-    JsonLine("raster").add("who", "tinsmith").add("points", static_cast<double>(terrain.vertex_count())).add("size", static_cast<double>(size)).add("result", sum).add(spent, size * size).add("build_cpu_s", build_s).add("pixels_per_s", static_cast<double>(size * size) / spent.cpu_s()).add("peak_bytes", static_cast<double>(memory.bytes())).print();
+    JsonLine("raster")
+        .add("who", "tinsmith")
+        .add("points", static_cast<double>(terrain.vertex_count()))
+        .add("size", static_cast<double>(size))
+        .add("result", sum)
+        .add(spent, size * size)
+        .add("build_cpu_s", build_s)
+        .add("pixels_per_s", static_cast<double>(size * size) / spent.cpu_s())
+        .add("peak_bytes", static_cast<double>(memory.bytes()))
+        .print();
   }
   if (options.text("--peer", "") == "gdal") compare(terrain, grid, best, build_s);
   return 0;

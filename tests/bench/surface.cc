@@ -45,7 +45,12 @@ void measure(const std::string& what, std::size_t operations, const Work& work) 
   const Stopwatch watch;
   const double result = work();
   const Spent spent = watch.spent();
-  JsonLine("surface").add("what", what).add("operations", static_cast<double>(operations)).add("result", result).add(spent, operations).print();
+  JsonLine("surface")
+      .add("what", what)
+      .add("operations", static_cast<double>(operations))
+      .add("result", result)
+      .add(spent, operations)
+      .print();
 }
 
 double sum_of_elevations(const Terrain& terrain, const std::vector<Point>& at, Interpolation by) {
@@ -78,17 +83,22 @@ int run_surface(std::span<const std::string> arguments) {
                     static_cast<std::int32_t>(box.min.y + (double(box.max.y) - box.min.y) * i / 1000)});
     }
   }
-  measure("elevation, linear", at.size(), [&] { return sum_of_elevations(terrain, at, Interpolation::kLinear); });
-  measure("elevation, natural neighbour", at.size(), [&] { return sum_of_elevations(terrain, at, Interpolation::kNaturalNeighbour); });
+  measure("elevation, linear", at.size(),
+          [&] { return sum_of_elevations(terrain, at, Interpolation::kLinear); });
+  measure("elevation, natural neighbour", at.size(),
+          [&] { return sum_of_elevations(terrain, at, Interpolation::kNaturalNeighbour); });
 
-  measure("volume against a level", triangles, [&] { return tin::query::volumes_at(terrain, ground, 500, {})->volume_above; });
+  measure("volume against a level", triangles,
+          [&] { return tin::query::volumes_at(terrain, ground, 500, {})->volume_above; });
   measure("surface area", triangles, [&] { return tin::query::surface_area(terrain, ground, {})->surface; });
-  measure("cut and fill between two", triangles, [&] { return tin::query::cut_fill(terrain, other, ground, {})->fill_volume; });
+  measure("cut and fill between two", triangles,
+          [&] { return tin::query::cut_fill(terrain, other, ground, {})->fill_volume; });
 
   const double interval = 1000.0 / static_cast<double>(levels);
   std::size_t places = 0;
   measure("contours", triangles, [&] {
-    tin::query::ContourTracer tracer(terrain, *tin::query::contour_levels(terrain, interval, 0, 1'000'000), {});
+    tin::query::ContourTracer tracer(terrain, *tin::query::contour_levels(terrain, interval, 0, 1'000'000),
+                                     {});
     std::size_t lines = 0;
     for (tin::query::ContourLine line; tracer.next(line); ++lines) places += line.places.size();
     return static_cast<double>(lines);

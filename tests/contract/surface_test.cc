@@ -1,5 +1,5 @@
-// Slopes, profiles, contours, volumes and sight lines over the wire: their numbers, limits and units, and that each process says
-// what its resource says.
+// Slopes, profiles, contours, volumes and sight lines over the wire: their numbers, limits and units, and
+// that each process says what its resource says.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,8 @@ namespace tests::contract {
 namespace {
 
 /// A roof over 100 x 100 m: z = 10 + x / 2 up to x = 50, then down again.
-constexpr const char* kRoof = R"({"id":"roof","crs":"EPSG:32617","verticalUnit":"metre","origin":[500000,4500000],
+constexpr const char* kRoof =
+    R"({"id":"roof","crs":"EPSG:32617","verticalUnit":"metre","origin":[500000,4500000],
   "vertices":[[500000,4500000,10],[500050,4500000,35],[500100,4500000,10],
               [500000,4500100,10],[500050,4500100,35],[500100,4500100,10]]})";
 
@@ -51,14 +52,17 @@ class SurfaceTest : public testing::Test {
 };
 
 TEST_F(SurfaceTest, SlopeAndAspectOfARoof) {
-  const Json east = get("/tins/roof/slope?x=500075&y=4500050"), west = get("/tins/roof/slope?x=500020&y=4500050");
+  const Json east = get("/tins/roof/slope?x=500075&y=4500050"),
+             west = get("/tins/roof/slope?x=500020&y=4500050");
   EXPECT_NEAR(east.at("slope").get<double>(), std::atan(0.5) * 180 / std::numbers::pi, 1e-9);
   EXPECT_EQ(east.at("aspect"), 90);
   EXPECT_EQ(west.at("aspect"), 270);
   EXPECT_EQ(west.at("unit"), "degree");
   EXPECT_EQ(west.at("revision"), 1);
   EXPECT_TRUE(get("/tins/roof/slope?x=0&y=0").at("slope").is_null());
-  const Json many = Json::parse(server_.post_json("/tins/roof/slope", R"({"positions":[[500075,4500050],[0,0],[500020,4500050]]})").body);
+  const Json many = Json::parse(
+      server_.post_json("/tins/roof/slope", R"({"positions":[[500075,4500050],[0,0],[500020,4500050]]})")
+          .body);
   EXPECT_EQ(many.at("aspect"), Json({90, nullptr, 270}));
 }
 
@@ -79,8 +83,10 @@ TEST_F(SurfaceTest, ProfileAcrossARoof) {
   }
   EXPECT_EQ(highest, 35);
   EXPECT_EQ(at, 60);
-  EXPECT_EQ(result("profile", {{"tin", "roof"}, {"positions", {{499990, 4500025}, {500110, 4500025}}}}), profile);
-  const Json posted = Json::parse(server_.post_json("/tins/roof/profile", R"({"positions":[[499990,4500025],[500110,4500025]]})").body);
+  EXPECT_EQ(result("profile", {{"tin", "roof"}, {"positions", {{499990, 4500025}, {500110, 4500025}}}}),
+            profile);
+  const Json posted = Json::parse(
+      server_.post_json("/tins/roof/profile", R"({"positions":[[499990,4500025],[500110,4500025]]})").body);
   EXPECT_EQ(posted, profile);
 }
 
@@ -101,9 +107,16 @@ TEST_F(SurfaceTest, LineOfSightOverARoof) {
   const Json seen = get(path + "&observer-height=26&target-height=25");
   EXPECT_EQ(seen.at("visible"), true);
   EXPECT_TRUE(seen.at("blockedAt").is_null());
-  EXPECT_EQ(result("line-of-sight", {{"tin", "roof"}, {"observer", {500000, 4500050}}, {"target", {500100, 4500050}}, {"observerHeight", 26}, {"targetHeight", 25}}), seen);
-  refuse(server_.get("/tins/roof/line-of-sight?observer=500000,4500050&target=0,0"), 422, "outside-lattice", "query:target");
-  refuse(server_.get("/tins/roof/line-of-sight?observer=500000,4500050&target=500100.5,4500050"), 422, "invalid-value", "query:target");
+  EXPECT_EQ(result("line-of-sight", {{"tin", "roof"},
+                                     {"observer", {500000, 4500050}},
+                                     {"target", {500100, 4500050}},
+                                     {"observerHeight", 26},
+                                     {"targetHeight", 25}}),
+            seen);
+  refuse(server_.get("/tins/roof/line-of-sight?observer=500000,4500050&target=0,0"), 422, "outside-lattice",
+         "query:target");
+  refuse(server_.get("/tins/roof/line-of-sight?observer=500000,4500050&target=500100.5,4500050"), 422,
+         "invalid-value", "query:target");
   refuse(server_.get(path + "&refraction=1"), 422, "invalid-value", "query:refraction");
   refuse(server_.get(path + "&curvature=yes"), 422, "invalid-value", "query:curvature");
 }
@@ -120,7 +133,8 @@ TEST_F(SurfaceTest, ContoursOfARoof) {
     EXPECT_TRUE(p[0] == 500010 || p[0] == 500090);
     EXPECT_EQ(p[2], 15);
   }
-  EXPECT_EQ(result("contours", {{"tin", "roof"}, {"interval", 10}, {"base", 5}, {"crs", "EPSG:32617"}}), contours);
+  EXPECT_EQ(result("contours", {{"tin", "roof"}, {"interval", 10}, {"base", 5}, {"crs", "EPSG:32617"}}),
+            contours);
   const Json degrees = get("/tins/roof/contours?levels=20");
   EXPECT_NEAR(degrees.at("features")[0].at("geometry").at("coordinates")[0][0].get<double>(), -81, 0.01);
   const Json cut = get("/tins/roof/contours?levels=20&crs=EPSG:32617&bbox=500000,4500000,500050,4500040");
@@ -141,14 +155,27 @@ TEST_F(SurfaceTest, VolumesOfARoof) {
   const Json half = get("/tins/roof/volume?level=22.5");
   EXPECT_NEAR(half.at("volumeAbove").get<double>(), 31'250, 1e-4);
   EXPECT_NEAR(half.at("areaBelow").get<double>(), 5000, 1e-6);
-  const Json west = get("/tins/roof/volume?level=10&polygon=500000,4500000,500050,4500000,500050,4500100,500000,4500100");
+  const Json west =
+      get("/tins/roof/volume?level=10&polygon=500000,4500000,500050,4500000,500050,4500100,500000,4500100");
   EXPECT_NEAR(west.at("volumeAbove").get<double>(), 62'500, 1e-4);
   EXPECT_EQ(get("/tins/roof/volume?level=10&bbox=500000,4500000,500050,4500100"), west);
-  EXPECT_EQ(result("volume", {{"tin", "roof"}, {"level", 10}, {"polygon", {{500000, 4500000}, {500050, 4500000}, {500050, 4500100}, {500000, 4500100}}}}), west);
+  EXPECT_EQ(
+      result("volume",
+             {{"tin", "roof"},
+              {"level", 10},
+              {"polygon", {{500000, 4500000}, {500050, 4500000}, {500050, 4500100}, {500000, 4500100}}}}),
+      west);
   // A hole takes its part away.
-  const Json holed = result("volume", {{"tin", "roof"}, {"level", 0}, {"polygon", {{{500000, 4500000}, {500050, 4500000}, {500050, 4500100}, {500000, 4500100}}, {{500010, 4500010}, {500020, 4500010}, {500020, 4500020}}}}});
+  const Json holed =
+      result("volume", {{"tin", "roof"},
+                        {"level", 0},
+                        {"polygon",
+                         {{{500000, 4500000}, {500050, 4500000}, {500050, 4500100}, {500000, 4500100}},
+                          {{500010, 4500010}, {500020, 4500010}, {500020, 4500020}}}}});
   EXPECT_NEAR(holed.at("areaAbove").get<double>(), 4950, 1e-6);
-  refuse(server_.get("/tins/roof/volume?level=1&polygon=500000,4500000,500050,4500050,500050,4500000,500000,4500050"), 422, "invalid-value", "query:polygon");
+  refuse(server_.get(
+             "/tins/roof/volume?level=1&polygon=500000,4500000,500050,4500050,500050,4500000,500000,4500050"),
+         422, "invalid-value", "query:polygon");
   const Json area = get("/tins/roof/surface-area");
   EXPECT_NEAR(area.at("planarArea").get<double>(), 10'000, 1e-6);
   EXPECT_NEAR(area.at("surfaceArea").get<double>(), 10'000 * std::sqrt(1.25), 1e-6);
@@ -156,21 +183,35 @@ TEST_F(SurfaceTest, VolumesOfARoof) {
 }
 
 TEST_F(SurfaceTest, CutAndFillAfterAnEdit) {
-  ASSERT_EQ(server_.post_json("/tins", R"({"id":"plan","crs":"EPSG:32617","vertices":[[500000,4500000,20],[500100,4500000,20],[500100,4500100,20],[500000,4500100,20]]})").status, 201);
+  ASSERT_EQ(
+      server_
+          .post_json(
+              "/tins",
+              R"({"id":"plan","crs":"EPSG:32617","vertices":[[500000,4500000,20],[500100,4500000,20],[500100,4500100,20],[500000,4500100,20]]})")
+          .status,
+      201);
   const Json inputs = {{"tin", "roof"}, {"after", "plan"}};
-  // The roof stands above 20 for 60 of its 100 m: 60 x 15 / 2 x 100 to cut, and two wedges of 20 x 10 / 2 x 100 to fill.
+  // The roof stands above 20 for 60 of its 100 m: 60 x 15 / 2 x 100 to cut, and two wedges of 20 x 10 / 2 x
+  // 100 to fill.
   const Json before = result("cut-fill", inputs);
   EXPECT_NEAR(before.at("cutVolume").get<double>(), 45'000, 1e-4);
   EXPECT_NEAR(before.at("fillVolume").get<double>(), 20'000, 1e-4);
   EXPECT_EQ(before.at("afterRevision"), 1);
-  ASSERT_EQ(server_.post_json("/tins/plan/edits", R"({"ops":[{"op":"set-z","id":1,"z":0},{"op":"set-z","id":2,"z":0},{"op":"set-z","id":3,"z":0},{"op":"set-z","id":4,"z":0}]})").status, 200);
+  ASSERT_EQ(
+      server_
+          .post_json(
+              "/tins/plan/edits",
+              R"({"ops":[{"op":"set-z","id":1,"z":0},{"op":"set-z","id":2,"z":0},{"op":"set-z","id":3,"z":0},{"op":"set-z","id":4,"z":0}]})")
+          .status,
+      200);
   const Json after = result("cut-fill", inputs);
   EXPECT_NEAR(after.at("cutVolume").get<double>(), 125'000 + 100'000, 1e-4);
   EXPECT_EQ(after.at("fillVolume"), 0);
   EXPECT_EQ(after.at("afterRevision"), 2);
   refuse(execute("cut-fill", {{"tin", "roof"}, {"after", "none"}}), 404, "not-found", "/inputs/after");
   ASSERT_EQ(server_.post_json("/tins", R"({"id":"elsewhere"})").status, 201);
-  refuse(execute("cut-fill", {{"tin", "roof"}, {"after", "elsewhere"}}), 422, "invalid-value", "/inputs/after");
+  refuse(execute("cut-fill", {{"tin", "roof"}, {"after", "elsewhere"}}), 422, "invalid-value",
+         "/inputs/after");
 }
 
 TEST_F(SurfaceTest, NaturalNeighboursRoundTheSurfaceOff) {
@@ -179,7 +220,11 @@ TEST_F(SurfaceTest, NaturalNeighboursRoundTheSurfaceOff) {
   EXPECT_NEAR(linear.at("z").get<double>(), 30, 1e-9);
   EXPECT_LT(natural.at("z").get<double>(), 30);
   EXPECT_GT(natural.at("z").get<double>(), 10);
-  const Json many = Json::parse(server_.post_json("/tins/roof/elevation", R"({"positions":[[500040,4500040]],"interpolation":"natural-neighbour"})").body);
+  const Json many =
+      Json::parse(server_
+                      .post_json("/tins/roof/elevation",
+                                 R"({"positions":[[500040,4500040]],"interpolation":"natural-neighbour"})")
+                      .body);
   EXPECT_EQ(many.at("z")[0], natural.at("z"));
   refuse(server_.get(at + "&interpolation=cubic"), 422, "invalid-value", "query:interpolation");
 }
@@ -189,7 +234,8 @@ TEST_F(SurfaceTest, LimitsHoldAndNotBefore) {
     std::string text;
     for (int i = 0; i < count; ++i) {
       const double angle = 2 * std::numbers::pi * i / count;
-      text += (i > 0 ? "," : "") + std::to_string(500050 + 20 * std::cos(angle)) + "," + std::to_string(4500050 + 20 * std::sin(angle));
+      text += (i > 0 ? "," : "") + std::to_string(500050 + 20 * std::cos(angle)) + "," +
+              std::to_string(4500050 + 20 * std::sin(angle));
     }
     return text;
   };
@@ -223,8 +269,10 @@ TEST_F(SurfaceTest, RastersShowSlopeAspectAndShade) {
   }
   refuse(server_.get("/tins/roof/export?layer=soil"), 422, "invalid-value", "query:layer");
   refuse(server_.get("/tins/roof/export?azimuth=3"), 422, "invalid-value", "query:azimuth");
-  refuse(server_.get("/tins/roof/export?layer=hillshade&altitude=91"), 422, "invalid-value", "query:altitude");
-  refuse(server_.get("/tins/roof/export?layer=slope&interpolation=linear"), 422, "invalid-value", "query:interpolation");
+  refuse(server_.get("/tins/roof/export?layer=hillshade&altitude=91"), 422, "invalid-value",
+         "query:altitude");
+  refuse(server_.get("/tins/roof/export?layer=slope&interpolation=linear"), 422, "invalid-value",
+         "query:interpolation");
   refuse(server_.get("/tins/roof/export?f=geojson&layer=slope"), 422, "invalid-value", "query:layer");
 }
 

@@ -14,7 +14,9 @@ struct Place {
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-inline Place place(exact::Point p) { return {static_cast<double>(p.x), static_cast<double>(p.y)}; }
+inline Place place(exact::Point p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y)};
+}
 
 /// Metres of one lattice step along x and along y.
 struct StepLengths {
@@ -34,7 +36,8 @@ class Ground {
   StepLengths steps_at(double y) const;
   /// Metres between two places: the geodesic, or the straight line of the map. Cost: about 1 us if geodesic.
   double distance(Place a, Place b) const;
-  /// Square metres of one square lattice step at the lattice ordinate `y`. Beyond the poles there is no ground: 0.
+  /// Square metres of one square lattice step at the lattice ordinate `y`. Beyond the poles there is no
+  /// ground: 0.
   double area_at(double y) const;
 
  private:

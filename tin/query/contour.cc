@@ -15,15 +15,18 @@ using mesh::next3;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
-base::Result<std::vector<double>> contour_levels(const terrain::Terrain& terrain, double interval, double base,
-                                                 std::size_t most) {
-  if (!(interval > 0) || !std::isfinite(interval)) return error(Code::kInvalidValue, "The interval must be greater than 0.");
+base::Result<std::vector<double>> contour_levels(const terrain::Terrain& terrain, double interval,
+                                                 double base, std::size_t most) {
+  if (!(interval > 0) || !std::isfinite(interval))
+    return error(Code::kInvalidValue, "The interval must be greater than 0.");
   std::vector<double> levels;
   const auto range = terrain.z_range();
   if (!range) return levels;
-  const double first = std::ceil((range->min - base) / interval), last = std::floor((range->max - base) / interval);
+  const double first = std::ceil((range->min - base) / interval),
+               last = std::floor((range->max - base) / interval);
   if (!(last - first < static_cast<double>(most))) {
-    return error(Code::kTooLarge, "There would be more than " + std::to_string(most) + " levels, the limit here.");
+    return error(Code::kTooLarge,
+                 "There would be more than " + std::to_string(most) + " levels, the limit here.");
   }
   for (double k = first; k <= last; ++k) {
     const double level = base + k * interval;
@@ -35,7 +38,8 @@ base::Result<std::vector<double>> contour_levels(const terrain::Terrain& terrain
   return levels;
 }
 
-ContourTracer::ContourTracer(const terrain::Terrain& terrain, std::vector<double> levels, const ContourOptions& options)
+ContourTracer::ContourTracer(const terrain::Terrain& terrain, std::vector<double> levels,
+                             const ContourOptions& options)
     : terrain_(terrain),
       mesh_(terrain.mesh()),
       levels_(std::move(levels)),
@@ -44,7 +48,8 @@ ContourTracer::ContourTracer(const terrain::Terrain& terrain, std::vector<double
   if (mesh_.dimension() == 2) sort_by_level();
 }
 
-/// Each triangle goes to the first level above its lowest corner, in the order of ids, if it reaches that level.
+/// Each triangle goes to the first level above its lowest corner, in the order of ids, if it reaches that
+/// level.
 void ContourTracer::sort_by_level() {
   seen_.assign(mesh_.triangle_slots(), 0);
   std::vector<std::uint32_t> order, first;
@@ -53,7 +58,8 @@ void ContourTracer::sort_by_level() {
   while (const auto view = walk.next()) {
     const auto& v = view->slots;
     const auto [low, high] = std::minmax({terrain_.z(v[0]), terrain_.z(v[1]), terrain_.z(v[2])});
-    const auto level = static_cast<std::size_t>(std::upper_bound(levels_.begin(), levels_.end(), low) - levels_.begin());
+    const auto level =
+        static_cast<std::size_t>(std::upper_bound(levels_.begin(), levels_.end(), low) - levels_.begin());
     if (level == levels_.size() || levels_[level] > high) continue;
     if (box_) {
       const auto p = mesh_.point(v[0]), q = mesh_.point(v[1]), r = mesh_.point(v[2]);
@@ -62,7 +68,8 @@ void ContourTracer::sort_by_level() {
         continue;
       }
     }
-    // The triangle by a half-edge's bits would do as well; any of its corners finds it in the star of the smallest.
+    // The triangle by a half-edge's bits would do as well; any of its corners finds it in the star of the
+    // smallest.
     TriangleSlot t = mesh_.triangle_at(v[0]);
     while (mesh_.vertex(t, next3(mesh_.index_of(t, v[0]))) != v[1]) {
       t = mesh_.twin(t, next3(mesh_.index_of(t, v[0]))).triangle();
@@ -78,7 +85,9 @@ void ContourTracer::sort_by_level() {
 }
 
 double ContourTracer::fraction() const {
-  return levels_.empty() || mesh_.dimension() < 2 ? 1 : static_cast<double>(level_index_) / static_cast<double>(levels_.size());
+  return levels_.empty() || mesh_.dimension() < 2
+             ? 1
+             : static_cast<double>(level_index_) / static_cast<double>(levels_.size());
 }
 
 bool ContourTracer::begin_level() {
@@ -251,7 +260,8 @@ void ContourTracer::emit(const Path& path) {
   }
   const bool runs_on = parts.running();
   ready_ = parts.take();
-  if (path.closed && ready_.size() > 1 && runs_on && ready_.front().places.front() == ready_.back().places.back()) {
+  if (path.closed && ready_.size() > 1 && runs_on &&
+      ready_.front().places.front() == ready_.back().places.back()) {
     // The ring began within a part.
     auto& tail = ready_.back().places;
     const auto& head = ready_.front().places;

@@ -17,10 +17,10 @@
 namespace tin::query {
 
 /// Multiples of `interval`, counted from `base`, within the terrain's range of elevations, ascending.
-/// Errors: kInvalidValue (an interval that is not above 0, or too small for the elevations to tell levels apart), kTooLarge
-/// (more than `most`).
-base::Result<std::vector<double>> contour_levels(const terrain::Terrain& terrain, double interval, double base,
-                                                 std::size_t most);
+/// Errors: kInvalidValue (an interval that is not above 0, or too small for the elevations to tell levels
+/// apart), kTooLarge (more than `most`).
+base::Result<std::vector<double>> contour_levels(const terrain::Terrain& terrain, double interval,
+                                                 double base, std::size_t most);
 
 struct ContourLine {
   double level = 0;
@@ -38,17 +38,19 @@ struct ContourOptions {
   std::optional<PlaceBox> box;  // lines are cut at its sides
 };
 
-/// Traces line after line, by level, with higher ground on the left. A vertex exactly on a level counts as above it: so
-/// no line ever branches, each is a ring or ends at the hull, at a void or at the box, and level ground at the level has the
-/// line along its lower border. Straight from edge to edge; a place lies on its edge up to rounding, and equals the
-/// vertex where that is on the level. The lines, their order and where rings begin depend on ids, positions and
-/// elevations only. Borrows the terrain. One thread. Memory: 12 bytes per triangle.
+/// Traces line after line, by level, with higher ground on the left. A vertex exactly on a level counts as
+/// above it: so no line ever branches, each is a ring or ends at the hull, at a void or at the box, and level
+/// ground at the level has the line along its lower border. Straight from edge to edge; a place lies on its
+/// edge up to rounding, and equals the vertex where that is on the level. The lines, their order and where
+/// rings begin depend on ids, positions and elevations only. Borrows the terrain. One thread. Memory: 12
+/// bytes per triangle.
 class ContourTracer {
  public:
   /// `levels` strictly ascending. Cost: O(triangles).
   ContourTracer(const terrain::Terrain& terrain, std::vector<double> levels, const ContourOptions& options);
 
-  /// The next line; false after the last. Cost: O(triangles crossed), and once per level those that have it in their range.
+  /// The next line; false after the last. Cost: O(triangles crossed), and once per level those that have it
+  /// in their range.
   bool next(ContourLine& line);
   /// Levels that are done, as a part of all.
   double fraction() const;
@@ -72,14 +74,15 @@ class ContourTracer {
   const std::optional<PlaceBox> box_;
   VoidMask voids_;
 
-  std::vector<std::size_t> begins_;     // of each level's triangles, those with a higher lowest corner than the level before
+  std::vector<std::size_t>
+      begins_;  // of each level's triangles, those with a higher lowest corner than the level before
   std::vector<std::uint32_t> triangles_;
-  std::vector<std::uint32_t> active_;   // those that this level may cross
-  std::vector<std::uint32_t> seen_;     // by triangle: one past the level that was traced through it last
-  std::size_t level_index_ = 0;         // of the next level
-  std::size_t at_ = 0;                  // in active_
+  std::vector<std::uint32_t> active_;  // those that this level may cross
+  std::vector<std::uint32_t> seen_;    // by triangle: one past the level that was traced through it last
+  std::size_t level_index_ = 0;        // of the next level
+  std::size_t at_ = 0;                 // in active_
   double level_ = 0;
-  std::vector<ContourLine> ready_;      // parts of the line traced last, in reverse
+  std::vector<ContourLine> ready_;  // parts of the line traced last, in reverse
 };
 
 }  // namespace tin::query

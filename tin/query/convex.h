@@ -39,7 +39,8 @@ inline double cross(Place a, Place b, Place c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The part of `polygon` where `height`, a linear function of the place, is not negative; empty when that has no area.
+/// The part of `polygon` where `height`, a linear function of the place, is not negative; empty when that has
+/// no area.
 template <class Height>
 Convex clip(const Convex& polygon, const Height& height) {
   Convex out;

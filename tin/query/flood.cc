@@ -33,7 +33,8 @@ bool near_segment(Place p, Place q, const std::array<Place, 3>& corners) {
   }
   const auto apart = [&](auto ordinate) {
     const auto [low, high] = std::minmax({ordinate(corners[0]), ordinate(corners[1]), ordinate(corners[2])});
-    return std::max(ordinate(p), ordinate(q)) < low - kNear || std::min(ordinate(p), ordinate(q)) > high + kNear;
+    return std::max(ordinate(p), ordinate(q)) < low - kNear ||
+           std::min(ordinate(p), ordinate(q)) > high + kNear;
   };
   return !apart([](Place c) { return c.x; }) && !apart([](Place c) { return c.y; });
 }
@@ -64,7 +65,8 @@ bool Flood::seed(const Corners& corners) {
   for (const Place& corner : corners) {
     const auto p = nearest(corner);
     if (!p) continue;
-    const Location where = last_.value() == mesh::kNone ? triangulation.locate(*p) : triangulation.locate_from(*p, last_);
+    const Location where =
+        last_.value() == mesh::kNone ? triangulation.locate(*p) : triangulation.locate_from(*p, last_);
     last_ = where.triangle;
     if (where.kind != Location::Kind::kOutsideHull) {
       push(where.triangle);
@@ -73,7 +75,8 @@ bool Flood::seed(const Corners& corners) {
     const TriangleSlot outside = where.triangle;
     // Wholly beyond one line of the hull: the usual case of those that do not meet it.
     const HalfEdge edge = mesh_.twin(outside, mesh_.index_of(outside, mesh::kInfinite));
-    if (all_far_right(frame::place(mesh_.point(mesh_.origin(edge))), frame::place(mesh_.point(mesh_.destination(edge))), corners)) {
+    if (all_far_right(frame::place(mesh_.point(mesh_.origin(edge))),
+                      frame::place(mesh_.point(mesh_.destination(edge))), corners)) {
       return false;
     }
   }
@@ -87,7 +90,8 @@ bool Flood::seed_on_hull(const Corners& corners) {
     const int infinite = mesh_.index_of(t, mesh::kInfinite);
     const HalfEdge edge = mesh_.twin(t, infinite);
     // Also when the whole hull is in the triangle.
-    if (near_segment(frame::place(mesh_.point(mesh_.origin(edge))), frame::place(mesh_.point(mesh_.destination(edge))), corners)) {
+    if (near_segment(frame::place(mesh_.point(mesh_.origin(edge))),
+                     frame::place(mesh_.point(mesh_.destination(edge))), corners)) {
       push(edge.triangle());
       return true;
     }
@@ -101,7 +105,8 @@ void Flood::spread(TriangleSlot t, const Corners& corners) {
     const HalfEdge edge(t, i);
     const TriangleSlot beyond = mesh_.twin(edge).triangle();
     if (mesh_.is_infinite(beyond) || seen_[beyond.value()] == call_) continue;
-    if (near_segment(frame::place(mesh_.point(mesh_.origin(edge))), frame::place(mesh_.point(mesh_.destination(edge))), corners)) {
+    if (near_segment(frame::place(mesh_.point(mesh_.origin(edge))),
+                     frame::place(mesh_.point(mesh_.destination(edge))), corners)) {
       push(beyond);
     }
   }

@@ -11,18 +11,18 @@
 
 namespace tin::query {
 
-/// Floods from a triangle at a corner (or where the hull is entered) over every edge that comes within a step of the given
-/// triangle: that is connected, since both the triangle and the hull are convex. So none that overlaps it is missed, and some are
-/// visited that only come near. Borrows the terrain. One thread.
+/// Floods from a triangle at a corner (or where the hull is entered) over every edge that comes within a step
+/// of the given triangle: that is connected, since both the triangle and the hull are convex. So none that
+/// overlaps it is missed, and some are visited that only come near. Borrows the terrain. One thread.
 class Flood {
  public:
   explicit Flood(const terrain::Terrain& terrain) : terrain_(terrain), mesh_(terrain.mesh()) {
     seen_.resize(mesh_.triangle_slots());
   }
 
-  /// Calls visit(t) once for each finite triangle that overlaps a, b, c, which are in lattice steps of the terrain but need not
-  /// be lattice points, and turn counter-clockwise. Cost: O(visited), and the hull's size where the triangle lies across it
-  /// with no corner inside.
+  /// Calls visit(t) once for each finite triangle that overlaps a, b, c, which are in lattice steps of the
+  /// terrain but need not be lattice points, and turn counter-clockwise. Cost: O(visited), and the hull's
+  /// size where the triangle lies across it with no corner inside.
   template <class Visit>
   void visit(Place a, Place b, Place c, const Visit& visit) {
     const Corners corners{a, b, c};

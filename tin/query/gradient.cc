@@ -18,7 +18,9 @@ namespace {
 constexpr double kRadian = std::numbers::pi / 180;
 }
 
-double slope_degrees(Gradient g) { return std::atan(std::hypot(g.east, g.north)) / kRadian; }
+double slope_degrees(Gradient g) {
+  return std::atan(std::hypot(g.east, g.north)) / kRadian;
+}
 
 std::optional<double> aspect_degrees(Gradient g) {
   if (g.east == 0 && g.north == 0) return std::nullopt;
@@ -57,7 +59,8 @@ Gradient GradientQuery::at_vertex(VertexSlot v) const {
     dz_dy += area * facet.dz_dy();
     areas += area;
   }
-  return gradient_on_ground(dz_dx / areas, dz_dy / areas, ground_.steps_at(mesh.point(v).y), ground_.vertical_m());
+  return gradient_on_ground(dz_dx / areas, dz_dy / areas, ground_.steps_at(mesh.point(v).y),
+                            ground_.vertical_m());
 }
 
 std::optional<Gradient> GradientQuery::at(Point p) {
@@ -70,7 +73,8 @@ std::optional<Gradient> GradientQuery::at(Point p) {
   if (where.kind == Location::Kind::kOutsideHull) return std::nullopt;
   if (where.kind == Location::Kind::kOnVertex) return at_vertex(where.vertex);
   const TriangleSlot t = answering_triangle(mesh, where);
-  if (voids_.any() && voids_.in_void_cell(p) && voids_.may_touch(mesh.triangle(t).vertices)) return std::nullopt;
+  if (voids_.any() && voids_.in_void_cell(p) && voids_.may_touch(mesh.triangle(t).vertices))
+    return std::nullopt;
   const Facet facet(terrain_, canonical_corners(mesh, t));
   return gradient_on_ground(facet.dz_dx(), facet.dz_dy(), ground_.steps_at(p.y), ground_.vertical_m());
 }

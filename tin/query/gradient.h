@@ -20,7 +20,8 @@ struct Gradient {
 
 /// The angle against the horizontal, 0 to 90.
 double slope_degrees(Gradient g);
-/// Where the surface faces: the direction of steepest descent, clockwise from north, 0 up to 360; nothing on level ground.
+/// Where the surface faces: the direction of steepest descent, clockwise from north, 0 up to 360; nothing on
+/// level ground.
 std::optional<double> aspect_degrees(Gradient g);
 
 /// Where the light comes from.
@@ -30,7 +31,8 @@ struct Sun {
   double exaggeration = 1;       // of elevations
 };
 
-/// Light on a surface from a sun: the cosine of the angle between the light and the surface's normal, 0 in the shade.
+/// Light on a surface from a sun: the cosine of the angle between the light and the surface's normal, 0 in
+/// the shade.
 class Shade {
  public:
   explicit Shade(const Sun& sun);
@@ -51,14 +53,14 @@ class GradientQuery {
   GradientQuery(const terrain::Terrain& terrain, Voids voids, const frame::Ground& ground)
       : terrain_(terrain), voids_(terrain, voids), ground_(ground) {}
 
-  /// That of the triangle (on an edge, of the one that the elevation is taken from); at a vertex the mean of its triangles'
-  /// by their areas on the lattice. Nothing outside, in voids, and where there are no triangles. Equal for every history of the
-  /// same set. Cost: as ElevationQuery::at().
+  /// That of the triangle (on an edge, of the one that the elevation is taken from); at a vertex the mean of
+  /// its triangles' by their areas on the lattice. Nothing outside, in voids, and where there are no
+  /// triangles. Equal for every history of the same set. Cost: as ElevationQuery::at().
   std::optional<Gradient> at(exact::Point p);
   /// At a vertex. Requires: dimension 2. Cost: its degree.
   Gradient at_vertex(mesh::VertexSlot v) const;
- private:
 
+ private:
   const terrain::Terrain& terrain_;
   VoidMask voids_;
   const frame::Ground& ground_;

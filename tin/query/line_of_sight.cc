@@ -19,7 +19,10 @@ constexpr double kEarthRadius = 6'371'008.8;  // mean radius R1 of the ellipsoid
 class SightLine {
  public:
   SightLine(double from_z, double to_z, double distance, double bulge)
-      : from_z_(from_z), rise_(distance > 0 ? (to_z - from_z) / distance : 0), distance_(distance), bulge_(bulge) {}
+      : from_z_(from_z),
+        rise_(distance > 0 ? (to_z - from_z) / distance : 0),
+        distance_(distance),
+        bulge_(bulge) {}
 
   /// Of a point at this distance with this elevation.
   double clearance(double d, double z) const {
@@ -50,7 +53,8 @@ SightPoint sight_point(const SightLine& line, const ProfilePoint& a, const Profi
 }
 
 /// Where the clearance falls below `least` between a (where it has not) and the lowest place after it.
-double first_below(const SightLine& line, const ProfilePoint& a, const ProfilePoint& b, double lowest, double least) {
+double first_below(const SightLine& line, const ProfilePoint& a, const ProfilePoint& b, double lowest,
+                   double least) {
   double above = a.distance, below = lowest;
   if (line.clearance(above, *a.z) < least) return above;
   for (int i = 0; i < 200 && above < below; ++i) {
@@ -63,8 +67,8 @@ double first_below(const SightLine& line, const ProfilePoint& a, const ProfilePo
 
 }  // namespace
 
-Result<Sight> line_of_sight(const terrain::Terrain& terrain, const frame::Ground& ground, const SightRequest& request,
-                            std::size_t max_points) {
+Result<Sight> line_of_sight(const terrain::Terrain& terrain, const frame::Ground& ground,
+                            const SightRequest& request, std::size_t max_points) {
   ElevationQuery query(terrain, request.voids);
   const auto from = query.at(request.observer), to = query.at(request.target);
   if (!from) return error(Code::kInvalidValue, "There is no surface at the observer.", "observer");
@@ -96,7 +100,8 @@ Result<Sight> line_of_sight(const terrain::Terrain& terrain, const frame::Ground
   }
   // A gap may end in the target alone.
   const double at_target = request.target_height;
-  if (at_target < sight.closest.clearance) sight.closest = {sight.distance, points->back().at, to->z, at_target};
+  if (at_target < sight.closest.clearance)
+    sight.closest = {sight.distance, points->back().at, to->z, at_target};
   sight.visible = !sight.blocked_at;
   return sight;
 }

@@ -9,8 +9,8 @@
 
 namespace tin::query {
 
-/// A sum that does not depend on the order of its terms: each is rounded to a whole number of quanta, 2^-100 of a bound,
-/// and those are added as integers.
+/// A sum that does not depend on the order of its terms: each is rounded to a whole number of quanta, 2^-100
+/// of a bound, and those are added as integers.
 class FixedSum {
  public:
   /// Requires: `bound` finite, and no partial sum larger.
@@ -29,13 +29,14 @@ struct Integral {
   double value = 0;
 };
 
-/// Integrates `f`, a linear function of the place, over a polygon: exactly (but for rounding) on a map plane. On the ellipsoid,
-/// where the size of a square degree changes with latitude, by a rule of degree 5 in each triangle: the relative error stays below 1e-10 for
-/// pieces of up to one degree.
+/// Integrates `f`, a linear function of the place, over a polygon: exactly (but for rounding) on a map plane.
+/// On the ellipsoid, where the size of a square degree changes with latitude, by a rule of degree 5 in each
+/// triangle: the relative error stays below 1e-10 for pieces of up to one degree.
 template <class F>
 Integral integrate(const frame::Ground& ground, const Convex& polygon, const F& f);
 
-/// The rule for one triangle: places as weights of its corners, and their parts of its area (Radon's seven points).
+/// The rule for one triangle: places as weights of its corners, and their parts of its area (Radon's seven
+/// points).
 struct QuadratureNode {
   double a, b, c, weight;
 };

@@ -15,7 +15,8 @@ using mesh::VertexSlot;
 
 namespace {
 
-// x87's 64 bits of mantissa: where a cell is long and thin its corners lie far out, and areas are small differences.
+// x87's 64 bits of mantissa: where a cell is long and thin its corners lie far out, and areas are small
+// differences.
 struct Corner {
   long double x, y;
 };
@@ -24,7 +25,9 @@ struct Vector {
   std::int64_t x, y;
 };
 
-Vector between(Point from, Point to) { return {std::int64_t{to.x} - from.x, std::int64_t{to.y} - from.y}; }
+Vector between(Point from, Point to) {
+  return {std::int64_t{to.x} - from.x, std::int64_t{to.y} - from.y};
+}
 
 /// The circumcentre of the origin, u and v, which are not collinear with it.
 Corner centre_with_origin(Vector u, Vector v) {
@@ -80,8 +83,8 @@ bool NaturalNeighbours::at_corner_or_hull(Point p, TriangleSlot t) {
   return false;
 }
 
-/// The triangles that an insertion of `p` would replace form a tree by adjacency, since no vertex is inside: walking
-/// around it in order gives their outline in order.
+/// The triangles that an insertion of `p` would replace form a tree by adjacency, since no vertex is inside:
+/// walking around it in order gives their outline in order.
 void NaturalNeighbours::carve(Point p, TriangleSlot t) {
   rim_.clear();
   for (int i = 0; i < 3; ++i) expand(p, HalfEdge(t, i));
@@ -110,8 +113,9 @@ void NaturalNeighbours::expand(Point p, HalfEdge start) {
   }
 }
 
-/// The area that p's cell takes from that of the vertex between two edges of the rim: the old cell's corners around the
-/// vertex, from the triangle behind `after` to that behind `before`, and the new ones between p and the vertex.
+/// The area that p's cell takes from that of the vertex between two edges of the rim: the old cell's corners
+/// around the vertex, from the triangle behind `after` to that behind `before`, and the new ones between p
+/// and the vertex.
 double NaturalNeighbours::stolen(Point p, HalfEdge before, HalfEdge after) const {
   const VertexSlot v = mesh_.origin(after);
   const auto from_p = [&](VertexSlot w) { return between(p, mesh_.point(w)); };

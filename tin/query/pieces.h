@@ -24,8 +24,9 @@ class Pieces {
   Pieces(const terrain::Terrain& terrain, const Region* region, Voids voids, base::Progress* progress)
       : terrain_(terrain), region_(region), voids_(terrain, voids), progress_(progress) {}
 
-  /// Calls visit(t, facet, piece, sign) for each piece of a triangle t; those of holes have sign -1 and are to be taken away.
-  /// The pieces depend on the set of vertices only, their order does not. Errors: kCancelled.
+  /// Calls visit(t, facet, piece, sign) for each piece of a triangle t; those of holes have sign -1 and are
+  /// to be taken away. The pieces depend on the set of vertices only, their order does not. Errors:
+  /// kCancelled.
   template <class Visit>
   base::Result<void> each(const Visit& visit) {
     const mesh::Mesh& mesh = terrain_.mesh();

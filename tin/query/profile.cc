@@ -122,8 +122,8 @@ Result<std::vector<ProfilePoint>> profile(const terrain::Terrain& terrain, const
   for (std::size_t i = 1; i < line.size() && !builder.full(); ++i) profiler.segment(line[i - 1], line[i]);
   if (line.size() == 1) profiler.segment(line[0], line[0]);
   if (builder.full()) {
-    return error(Code::kTooLarge,
-                 "The profile would have more than " + std::to_string(max_points) + " points, the limit here.");
+    return error(Code::kTooLarge, "The profile would have more than " + std::to_string(max_points) +
+                                      " points, the limit here.");
   }
   return builder.take();
 }

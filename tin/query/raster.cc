@@ -120,8 +120,7 @@ void Rasteriser::sort_into_strips() {
       const TriangleSlot t(i);
       if (!mesh_.is_alive(t) || mesh_.is_infinite(t)) continue;
       const auto& v = mesh_.triangle(t).vertices;
-      const auto [low, high] =
-          std::minmax({mesh_.point(v[0]).y, mesh_.point(v[1]).y, mesh_.point(v[2]).y});
+      const auto [low, high] = std::minmax({mesh_.point(v[0]).y, mesh_.point(v[1]).y, mesh_.point(v[2]).y});
       const std::size_t first = y_.first_from(low);
       if (first == y_.size() || y_[first] > high) continue;
       visit(i, y_.reversed() ? strip_of(y_.first_from(high + 1.0) - 1) : strip_of(first));
@@ -168,9 +167,11 @@ void Rasteriser::make_strip(std::size_t strip) {
   strip_end_ = y_.reversed() ? y_.size() - begin : end;
   strip_.assign((end - begin) * x_.size(), nodata_);
   steps_.clear();
-  for (std::size_t r = strip_begin_; gradient_ && r < strip_end_; ++r) steps_.push_back(ground_->steps_at(y_[r]));
+  for (std::size_t r = strip_begin_; gradient_ && r < strip_end_; ++r)
+    steps_.push_back(ground_->steps_at(y_[r]));
   if (mesh_.dimension() < 2) return paint_line();
-  const auto bucket = [strip](const std::vector<std::size_t>& begins, const std::vector<std::uint32_t>& items) {
+  const auto bucket = [strip](const std::vector<std::size_t>& begins,
+                              const std::vector<std::uint32_t>& items) {
     return std::span(items).subspan(begins[strip], begins[strip + 1] - begins[strip]);
   };
   const auto fresh = bucket(triangle_begins_, triangles_);
@@ -231,7 +232,8 @@ void Rasteriser::paint_span(const Scan& scan, std::size_t row, std::size_t first
   if (layer_ == RasterLayer::kElevation) {
     scan.facet.z_along(y_[row], {x_.doubles() + first, end - first}, out);
   } else {
-    const Gradient g = gradient_on_ground(scan.dz_dx, scan.dz_dy, steps_[row - strip_begin_], ground_->vertical_m());
+    const Gradient g =
+        gradient_on_ground(scan.dz_dx, scan.dz_dy, steps_[row - strip_begin_], ground_->vertical_m());
     std::fill_n(out, end - first, layer_value(layer_, g, shade_));
   }
 }
@@ -244,7 +246,9 @@ void Rasteriser::clear_voids(std::size_t row, std::size_t first, std::size_t end
 
 void Rasteriser::paint_vertex(VertexSlot v) {
   const Point p = mesh_.point(v);
-  const double value = layer_ == RasterLayer::kElevation ? terrain_.z(v) : layer_value(layer_, gradient_->at_vertex(v), shade_);
+  const double value = layer_ == RasterLayer::kElevation
+                           ? terrain_.z(v)
+                           : layer_value(layer_, gradient_->at_vertex(v), shade_);
   for (std::size_t r = std::max(y_.first_from(p.y), strip_begin_); r < strip_end_ && y_[r] == p.y; ++r) {
     for (std::size_t c = x_.first_from(p.x); c < x_.size() && x_[c] == p.x; ++c) *at(r, c) = value;
   }

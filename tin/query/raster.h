@@ -16,9 +16,9 @@
 
 namespace tin::query {
 
-/// Where the pixels of a raster have their centres: column i at lattice abscissa x[i], row j at lattice ordinate y[j], for
-/// rasters whose rows and columns run along the lattice's axes. Each ascends or descends (not necessarily strictly). Values
-/// beyond the lattice may be clamped to +-2^30: no terrain is there.
+/// Where the pixels of a raster have their centres: column i at lattice abscissa x[i], row j at lattice
+/// ordinate y[j], for rasters whose rows and columns run along the lattice's axes. Each ascends or descends
+/// (not necessarily strictly). Values beyond the lattice may be clamped to +-2^30: no terrain is there.
 struct PixelCentres {
   std::vector<std::int32_t> x, y;
 };
@@ -36,18 +36,22 @@ double layer_value(RasterLayer layer, Gradient g, const Shade& shade);
 struct RasterOptions {
   RasterLayer layer = RasterLayer::kElevation;
   Voids voids = Voids::kKeep;
-  Sun sun;                                 // for kHillshade
-  const frame::Ground* ground = nullptr;   // required but for kElevation
+  Sun sun;                                // for kHillshade
+  const frame::Ground* ground = nullptr;  // required but for kElevation
 };
 
-/// Values equal ElevationQuery::at() and GradientQuery::at() at each centre, bit for bit. Rows are made in strips, so that memory is
-/// O(triangles + columns): two numbers per triangle and 16 MiB, or one row. Borrows the terrain and ground. One thread.
+/// Values equal ElevationQuery::at() and GradientQuery::at() at each centre, bit for bit. Rows are made in
+/// strips, so that memory is O(triangles + columns): two numbers per triangle and 16 MiB, or one row. Borrows
+/// the terrain and ground. One thread.
 class Rasteriser {
  public:
-  /// `nodata` stands where there is no surface. Requires: no more than 2^31 rows and columns. Cost: O(triangles).
-  Rasteriser(const terrain::Terrain& terrain, PixelCentres centres, const RasterOptions& options, double nodata);
+  /// `nodata` stands where there is no surface. Requires: no more than 2^31 rows and columns. Cost:
+  /// O(triangles).
+  Rasteriser(const terrain::Terrain& terrain, PixelCentres centres, const RasterOptions& options,
+             double nodata);
 
-  /// Fills `values`, one per column. Rows in ascending order cost O(pixels + triangles) in total; going back starts anew.
+  /// Fills `values`, one per column. Rows in ascending order cost O(pixels + triangles) in total; going back
+  /// starts anew.
   void row(std::size_t row, std::span<double> values);
 
  private:
@@ -96,8 +100,8 @@ class Rasteriser {
   Shade shade_;
 
   const std::size_t strip_rows_, strips_;
-  // Triangles and vertices by the first strip, in the order of asking, that they may have a pixel in; `begins` has one past
-  // the last as well. Rows are numbered by ascending y here.
+  // Triangles and vertices by the first strip, in the order of asking, that they may have a pixel in;
+  // `begins` has one past the last as well. Rows are numbered by ascending y here.
   std::vector<std::size_t> triangle_begins_, vertex_begins_;
   std::vector<std::uint32_t> triangles_, vertices_;
   std::vector<std::uint32_t> active_;  // triangles that go on into the next strip

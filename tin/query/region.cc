@@ -16,11 +16,14 @@ using exact::Point;
 
 namespace {
 
-int sign(std::int64_t v) { return (v > 0) - (v < 0); }
+int sign(std::int64_t v) {
+  return (v > 0) - (v < 0);
+}
 
 /// Of collinear points: whether p lies between a and b, ends included.
 bool between(Point a, Point b, Point p) {
-  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y && p.y <= std::max(a.y, b.y);
+  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y &&
+         p.y <= std::max(a.y, b.y);
 }
 
 bool meet(Point a, Point b, Point c, Point d) {
@@ -31,8 +34,8 @@ bool meet(Point a, Point b, Point c, Point d) {
   const int c_side = sign(orientation(a, b, c)), d_side = sign(orientation(a, b, d));
   const int a_side = sign(orientation(c, d, a)), b_side = sign(orientation(c, d, b));
   if (c_side * d_side < 0 && a_side * b_side < 0) return true;
-  return (c_side == 0 && between(a, b, c)) || (d_side == 0 && between(a, b, d)) || (a_side == 0 && between(c, d, a)) ||
-         (b_side == 0 && between(c, d, b));
+  return (c_side == 0 && between(a, b, c)) || (d_side == 0 && between(a, b, d)) ||
+         (a_side == 0 && between(c, d, a)) || (b_side == 0 && between(c, d, b));
 }
 
 Int128 twice_area(const Ring& ring) {
@@ -53,13 +56,15 @@ std::vector<Edge> edges_by_x(std::span<const Ring> rings) {
     for (std::size_t i = 0; i < rings[r].size(); ++i)
       edges.push_back({r, i, rings[r][i], rings[r][(i + 1) % rings[r].size()]});
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& l, const Edge& r) { return std::min(l.a, l.b) < std::min(r.a, r.b); });
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& l, const Edge& r) { return std::min(l.a, l.b) < std::min(r.a, r.b); });
   return edges;
 }
 
 /// Neighbours in a ring share an end and may share nothing else.
 bool fold_back(const Edge& first, const Edge& second) {
-  return orientation(first.a, first.b, second.b) == 0 && (between(first.a, first.b, second.b) || between(second.a, second.b, first.a));
+  return orientation(first.a, first.b, second.b) == 0 &&
+         (between(first.a, first.b, second.b) || between(second.a, second.b, first.a));
 }
 
 std::optional<Edge> clash(std::span<const Ring> rings) {
@@ -71,7 +76,8 @@ std::optional<Edge> clash(std::span<const Ring> rings) {
       const Edge& f = edges[j];
       if (!meet(e.a, e.b, f.a, f.b)) continue;
       const std::size_t size = rings[e.ring].size();
-      const bool e_then_f = e.ring == f.ring && (e.at + 1) % size == f.at, f_then_e = e.ring == f.ring && (f.at + 1) % size == e.at;
+      const bool e_then_f = e.ring == f.ring && (e.at + 1) % size == f.at,
+                 f_then_e = e.ring == f.ring && (f.at + 1) % size == e.at;
       if (e_then_f || f_then_e) {
         if (e_then_f ? fold_back(e, f) : fold_back(f, e)) return f;
       } else {
@@ -125,7 +131,9 @@ class EarCutter {
   }
 
  private:
-  std::int64_t turn_at(std::size_t i) const { return orientation(ring_[last_[i]], ring_[i], ring_[next_[i]]); }
+  std::int64_t turn_at(std::size_t i) const {
+    return orientation(ring_[last_[i]], ring_[i], ring_[next_[i]]);
+  }
 
   /// Whether no other corner lies in the closed triangle that would be cut off; only reflex ones can.
   bool is_ear(std::size_t i) const {
@@ -157,7 +165,8 @@ Result<Region> Region::make(std::span<const Ring> rings) {
   std::vector<Ring> clean;
   for (std::size_t r = 0; r < rings.size(); ++r) {
     clean.push_back(without_repeats(rings[r]));
-    if (clean.back().size() < 3) return error(Code::kInvalidValue, "The ring has no area.", "/" + std::to_string(r));
+    if (clean.back().size() < 3)
+      return error(Code::kInvalidValue, "The ring has no area.", "/" + std::to_string(r));
   }
   if (clean.empty()) return error(Code::kInvalidValue, "A polygon needs a ring.");
   if (const auto edge = clash(clean)) {
@@ -174,7 +183,9 @@ Result<Region> Region::make(std::span<const Ring> rings) {
     for (std::size_t other = 1; other < clean.size() && r > 0; ++other) {
       if (other != r) placed = placed && !inside(clean[other], ring[0]);
     }
-    if (!placed) return error(Code::kInvalidValue, "The hole is not inside the outline, or in another hole.", "/" + std::to_string(r));
+    if (!placed)
+      return error(Code::kInvalidValue, "The hole is not inside the outline, or in another hole.",
+                   "/" + std::to_string(r));
     EarCutter(ring, r == 0 ? region.outline_ : region.holes_).run();
   }
   return region;

@@ -15,9 +15,10 @@ using Ring = std::vector<exact::Point>;
 /// A simple polygon with holes on the lattice, cut into triangles.
 class Region {
  public:
-  /// From rings without a repeated last position (one that repeats the first is dropped), in any orientation; the first is
-  /// the outline, the others are holes in it. Errors, with `where` "/ring" or "/ring/position": kInvalidValue when a ring has
-  /// no area, crosses or touches itself or another, or a hole is not inside the outline. Cost: O(n^2) simple tests.
+  /// From rings without a repeated last position (one that repeats the first is dropped), in any orientation;
+  /// the first is the outline, the others are holes in it. Errors, with `where` "/ring" or "/ring/position":
+  /// kInvalidValue when a ring has no area, crosses or touches itself or another, or a hole is not inside the
+  /// outline. Cost: O(n^2) simple tests.
   static base::Result<Region> make(std::span<const Ring> rings);
 
   using Triangle = std::array<exact::Point, 3>;  // counter-clockwise

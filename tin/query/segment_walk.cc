@@ -26,7 +26,8 @@ struct SegmentWalk::Step {
 namespace {
 
 std::int64_t dot(Point o, Point a, Point b) {
-  return (std::int64_t{a.x} - o.x) * (std::int64_t{b.x} - o.x) + (std::int64_t{a.y} - o.y) * (std::int64_t{b.y} - o.y);
+  return (std::int64_t{a.x} - o.x) * (std::int64_t{b.x} - o.x) +
+         (std::int64_t{a.y} - o.y) * (std::int64_t{b.y} - o.y);
 }
 
 }  // namespace
@@ -39,7 +40,8 @@ void SegmentWalk::stations(Point p, Point q, std::vector<Station>& out) {
   if (mesh_.dimension() < 2) return on_line();
   const auto& triangulation = terrain_.triangulation();
   // Triangles may have come and gone since the last walk only if the caller broke his promise not to edit.
-  const Location where = last_.value() == mesh::kNone ? triangulation.locate(p) : triangulation.locate_from(p, last_);
+  const Location where =
+      last_.value() == mesh::kNone ? triangulation.locate(p) : triangulation.locate_from(p, last_);
   last_ = where.triangle;
   for (Step step = start(where); step.kind != Step::Kind::kEnd;) {
     step = step.kind == Step::Kind::kAtVertex ? from_vertex(step.vertex) : into(step.edge);
@@ -90,7 +92,8 @@ SegmentWalk::Step SegmentWalk::from_vertex(VertexSlot v) {
     const int i = mesh_.index_of(t, v);
     if (!mesh_.is_infinite(t)) {
       const VertexSlot b = mesh_.vertex(t, next3(i)), c = mesh_.vertex(t, prev3(i));
-      const std::int64_t side_b = orientation(at, mesh_.point(b), q_), side_c = orientation(at, mesh_.point(c), q_);
+      const std::int64_t side_b = orientation(at, mesh_.point(b), q_),
+                         side_c = orientation(at, mesh_.point(c), q_);
       if (side_b == 0 && ahead(at, mesh_.point(b))) return along_edge(HalfEdge(t, prev3(i)), b);
       if (side_c == 0 && ahead(at, mesh_.point(c))) return along_edge(HalfEdge(t, next3(i)), c);
       if (side_b > 0 && side_c < 0) return out_of(HalfEdge(t, i));
@@ -168,16 +171,21 @@ SegmentWalk::Step SegmentWalk::end_in(TriangleSlot t) {
 bool SegmentWalk::holds_goal(TriangleSlot t) const {
   for (int i = 0; i < 3; ++i) {
     const HalfEdge edge(t, i);
-    if (orientation(mesh_.point(mesh_.origin(edge)), mesh_.point(mesh_.destination(edge)), q_) < 0) return false;
+    if (orientation(mesh_.point(mesh_.origin(edge)), mesh_.point(mesh_.destination(edge)), q_) < 0)
+      return false;
   }
   return true;
 }
 
 /// Of a point on the line: whether it lies in the goal's direction from `from`.
-bool SegmentWalk::ahead(Point from, Point v) const { return dot(from, q_, v) > 0; }
+bool SegmentWalk::ahead(Point from, Point v) const {
+  return dot(from, q_, v) > 0;
+}
 
 /// Of a point on the line: whether it comes after p and not after q.
-bool SegmentWalk::reaches(Point v) const { return dot(p_, q_, v) > 0 && dot(q_, p_, v) >= 0; }
+bool SegmentWalk::reaches(Point v) const {
+  return dot(p_, q_, v) > 0 && dot(q_, p_, v) >= 0;
+}
 
 void SegmentWalk::add(double along, frame::Place at, double z) {
   // Two quotients of neighbouring crossings may be rounded the wrong way around.
@@ -204,7 +212,8 @@ void SegmentWalk::add_crossing(HalfEdge edge) {
   const std::int64_t side_a = orientation(p_, q_, a), side_b = orientation(p_, q_, b);
   const double along = static_cast<double>(side_p) / static_cast<double>(side_p - side_q);
   const double part = static_cast<double>(side_a) / static_cast<double>(side_a - side_b);
-  const frame::Place at{a.x + part * (static_cast<double>(b.x) - a.x), a.y + part * (static_cast<double>(b.y) - a.y)};
+  const frame::Place at{a.x + part * (static_cast<double>(b.x) - a.x),
+                        a.y + part * (static_cast<double>(b.y) - a.y)};
   add(along, at, terrain_.z(u) + part * (terrain_.z(v) - terrain_.z(u)));
 }
 

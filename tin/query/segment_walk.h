@@ -14,8 +14,8 @@ namespace tin::query {
 struct Station {
   double along = 0;  // 0 at p, 1 at q; does not decrease
   frame::Place at;
-  double z = 0;                                    // on the surface, voids filled
-  mesh::TriangleSlot to_next{mesh::kNone};         // the triangle up to the next station: on an edge its owner
+  double z = 0;                             // on the surface, voids filled
+  mesh::TriangleSlot to_next{mesh::kNone};  // the triangle up to the next station: on an edge its owner
 };
 
 /// Walks line after line, each from where the last ended. Borrows the terrain. One thread.
@@ -24,10 +24,10 @@ class SegmentWalk {
   explicit SegmentWalk(const terrain::Terrain& terrain)
       : terrain_(terrain), mesh_(terrain.mesh()), elevation_(terrain, Voids::kFill) {}
 
-  /// The stations of the line from `p` to `q`, in order; none when it does not meet the hull, one when it only touches
-  /// it (or p equals q). The first is p itself unless that is outside; the last is q, or where the line leaves the hull. Of a
-  /// terrain without triangles: its vertices on the line, if that runs along them. Cost: O(stations), and the hull's
-  /// size when p is outside.
+  /// The stations of the line from `p` to `q`, in order; none when it does not meet the hull, one when it
+  /// only touches it (or p equals q). The first is p itself unless that is outside; the last is q, or where
+  /// the line leaves the hull. Of a terrain without triangles: its vertices on the line, if that runs along
+  /// them. Cost: O(stations), and the hull's size when p is outside.
   void stations(exact::Point p, exact::Point q, std::vector<Station>& out);
 
  private:

@@ -64,11 +64,17 @@ Facet::Facet(const terrain::Terrain& terrain, const Slots& corners)
       area_(static_cast<double>(orientation(a_, b_, c_))) {}
 
 namespace {
-double along(std::int32_t from, std::int32_t to) { return static_cast<double>(to) - from; }
+double along(std::int32_t from, std::int32_t to) {
+  return static_cast<double>(to) - from;
+}
 }  // namespace
 
-double Facet::dz_dx() const { return (rise_b_ * along(a_.y, c_.y) - rise_c_ * along(a_.y, b_.y)) / area_; }
-double Facet::dz_dy() const { return (rise_c_ * along(a_.x, b_.x) - rise_b_ * along(a_.x, c_.x)) / area_; }
+double Facet::dz_dx() const {
+  return (rise_b_ * along(a_.y, c_.y) - rise_c_ * along(a_.y, b_.y)) / area_;
+}
+double Facet::dz_dy() const {
+  return (rise_c_ * along(a_.x, b_.x) - rise_b_ * along(a_.x, c_.x)) / area_;
+}
 
 double Facet::z(Point p) const {
   const auto weight_b = static_cast<double>(orientation(a_, p, c_)),
@@ -78,9 +84,11 @@ double Facet::z(Point p) const {
 
 void Facet::z_along(std::int32_t y, std::span<const double> x, double* out) const {
   constexpr double kExact = 0x1p26;  // products of two such numbers, and their differences, are exact doubles
-  const double ab_x = along(a_.x, b_.x), ab_y = along(a_.y, b_.y), ac_x = along(a_.x, c_.x), ac_y = along(a_.y, c_.y);
+  const double ab_x = along(a_.x, b_.x), ab_y = along(a_.y, b_.y), ac_x = along(a_.x, c_.x),
+               ac_y = along(a_.y, c_.y);
   const double up = along(a_.y, y), ax = a_.x;
-  const double widest = std::max({std::abs(ab_x), std::abs(ab_y), std::abs(ac_x), std::abs(ac_y), std::abs(up)});
+  const double widest =
+      std::max({std::abs(ab_x), std::abs(ab_y), std::abs(ac_x), std::abs(ac_y), std::abs(up)});
   if (widest >= kExact) {
     for (std::size_t i = 0; i < x.size(); ++i) out[i] = z(Point{static_cast<std::int32_t>(x[i]), y});
     return;

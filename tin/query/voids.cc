@@ -55,7 +55,9 @@ bool VoidMask::may_touch(std::span<const mesh::VertexSlot> corners) const {
   high_r = std::min(high_r, grid_->height - 1.0);
   if (low_c > high_c) return false;
   for (double r = low_r; r <= high_r; ++r) {
-    if (any_void(static_cast<std::size_t>(r), static_cast<std::size_t>(low_c), static_cast<std::size_t>(high_c))) return true;
+    if (any_void(static_cast<std::size_t>(r), static_cast<std::size_t>(low_c),
+                 static_cast<std::size_t>(high_c)))
+      return true;
   }
   return false;
 }
@@ -130,7 +132,9 @@ void VoidMask::solid_in_row(const Convex& band, double row, std::vector<Convex>&
   }
   // Runs of solid cells; what lies beside the raster is solid too, as if it were one wide cell.
   const double last = std::min(std::ceil(high), grid_->width + 1.0);
-  const auto side = [&](double column) { return column < 0 ? low - 1 : column > grid_->width ? high + 1 : column; };
+  const auto side = [&](double column) {
+    return column < 0 ? low - 1 : column > grid_->width ? high + 1 : column;
+  };
   double begin = std::max(std::floor(low), -1.0);
   for (double column = begin; column <= last; ++column) {
     if (column < last && !is_void_cell(column, row)) continue;

@@ -30,8 +30,8 @@ class VoidMask {
 
   /// Whether there are voids at all.
   bool any() const { return grid_ != nullptr; }
-  /// Whether the triangle (or edge) of these corners may hold positions that are void. Cost: the cells of its bounding box
-  /// at worst, 64 at a time.
+  /// Whether the triangle (or edge) of these corners may hold positions that are void. Cost: the cells of its
+  /// bounding box at worst, 64 at a time.
   bool may_touch(std::span<const mesh::VertexSlot> corners) const;
   /// Whether the cell that holds `p` is void. Requires: any().
   bool in_void_cell(exact::Point p) const;
@@ -42,7 +42,8 @@ class VoidMask {
   void solid_parts(const Convex& polygon, std::vector<Convex>& out) const;
 
  private:
-  // Cells by their place in the raster, in doubles: cell i reaches from i to i + 1, columns to the right, rows as stored.
+  // Cells by their place in the raster, in doubles: cell i reaches from i to i + 1, columns to the right,
+  // rows as stored.
   double column_at(double x) const { return (x - grid_->x0) / grid_->dx + 0.5; }
   double row_at(double y) const { return (y - grid_->y0) / grid_->dy + 0.5; }
   double x_at(double column) const { return grid_->x0 + (column - 0.5) * grid_->dx; }

@@ -18,7 +18,8 @@ double area_bound(const terrain::Terrain& terrain, const frame::Ground& ground) 
   const auto box = terrain.bounds();
   if (!box) return 1;
   const double equator = std::clamp(terrain.frame().y.lattice(0), double(box->min.y), double(box->max.y));
-  const double largest = std::max({ground.area_at(box->min.y), ground.area_at(box->max.y), ground.area_at(equator)});
+  const double largest =
+      std::max({ground.area_at(box->min.y), ground.area_at(box->max.y), ground.area_at(equator)});
   return 2 * largest * (double(box->max.x) - box->min.x + 1) * (double(box->max.y) - box->min.y + 1) + 1;
 }
 
@@ -46,38 +47,40 @@ Result<LevelVolumes> volumes_at(const terrain::Terrain& terrain, const frame::Gr
                                 const Where& where, base::Progress* progress) {
   const double area = area_bound(terrain, ground), height = z_bound(terrain) + std::abs(level);
   Side above(area, height), below(area, height);
-  const auto done = Pieces(terrain, where.region, where.voids, progress)
-                        .each([&](TriangleSlot t, const Facet& facet, const Convex& piece, double sign) {
-                          const auto& v = terrain.mesh().triangle(t).vertices;
-                          const auto [low, high] = std::minmax({terrain.z(v[0]), terrain.z(v[1]), terrain.z(v[2])});
-                          const Plane plane = facet.plane();
-                          const auto over = [&](Place p) { return plane(p) - level; };
-                          const auto under = [&](Place p) { return level - plane(p); };
-                          if (low >= level) return above.add(integrate(ground, piece, over), sign);
-                          if (high < level) return below.add(integrate(ground, piece, under), sign);
-                          above.add(integrate(ground, clip(piece, over), over), sign);
-                          below.add(integrate(ground, clip(piece, under), under), sign);
-                        });
+  const auto done =
+      Pieces(terrain, where.region, where.voids, progress)
+          .each([&](TriangleSlot t, const Facet& facet, const Convex& piece, double sign) {
+            const auto& v = terrain.mesh().triangle(t).vertices;
+            const auto [low, high] = std::minmax({terrain.z(v[0]), terrain.z(v[1]), terrain.z(v[2])});
+            const Plane plane = facet.plane();
+            const auto over = [&](Place p) { return plane(p) - level; };
+            const auto under = [&](Place p) { return level - plane(p); };
+            if (low >= level) return above.add(integrate(ground, piece, over), sign);
+            if (high < level) return below.add(integrate(ground, piece, under), sign);
+            above.add(integrate(ground, clip(piece, over), over), sign);
+            below.add(integrate(ground, clip(piece, under), under), sign);
+          });
   if (!done) return done.error();
   const double metres = ground.vertical_m();
   return LevelVolumes{above.area(), below.area(), above.volume() * metres, below.volume() * metres};
 }
 
-Result<SurfaceArea> surface_area(const terrain::Terrain& terrain, const frame::Ground& ground, const Where& where,
-                                 base::Progress* progress) {
+Result<SurfaceArea> surface_area(const terrain::Terrain& terrain, const frame::Ground& ground,
+                                 const Where& where, base::Progress* progress) {
   // A facet's surface has no bound but its steepness: that of a rise over the least distance of two vertices.
   const frame::StepLengths step = ground.steps_at(terrain.frame().y.lattice(89));
   const double steepest = 1 + 2 * z_bound(terrain) * ground.vertical_m() / std::min(step.x, step.y);
   Side sum(area_bound(terrain, ground), 2 * steepest);
-  const auto done = Pieces(terrain, where.region, where.voids, progress)
-                        .each([&](TriangleSlot, const Facet& facet, const Convex& piece, double sign) {
-                          const double x = facet.dz_dx() * ground.vertical_m(), y = facet.dz_dy() * ground.vertical_m();
-                          const auto stretch = [&](Place p) {
-                            const frame::StepLengths metres = ground.steps_at(p.y);
-                            return std::sqrt(1 + x / metres.x * (x / metres.x) + y / metres.y * (y / metres.y));
-                          };
-                          sum.add(integrate(ground, piece, stretch), sign);
-                        });
+  const auto done =
+      Pieces(terrain, where.region, where.voids, progress)
+          .each([&](TriangleSlot, const Facet& facet, const Convex& piece, double sign) {
+            const double x = facet.dz_dx() * ground.vertical_m(), y = facet.dz_dy() * ground.vertical_m();
+            const auto stretch = [&](Place p) {
+              const frame::StepLengths metres = ground.steps_at(p.y);
+              return std::sqrt(1 + x / metres.x * (x / metres.x) + y / metres.y * (y / metres.y));
+            };
+            sum.add(integrate(ground, piece, stretch), sign);
+          });
   if (!done) return done.error();
   return SurfaceArea{sum.area(), sum.volume()};
 }
@@ -87,7 +90,8 @@ namespace {
 /// The lattice of one frame in steps of another's.
 class Across {
  public:
-  Across(const frame::Frame& from, const frame::Frame& to) : from_(from), to_(to), same_(from.x == to.x && from.y == to.y) {}
+  Across(const frame::Frame& from, const frame::Frame& to)
+      : from_(from), to_(to), same_(from.x == to.x && from.y == to.y) {}
   Place operator()(Place p) const {
     if (same_) return p;
     return {to_.x.lattice(from_.x.world(p.x)), to_.y.lattice(from_.y.world(p.y))};
@@ -105,7 +109,8 @@ class Across {
 /// The second terrain under the pieces of the first.
 class Overlay {
  public:
-  Overlay(const terrain::Terrain& before, const terrain::Terrain& after, const frame::Ground& ground, Voids voids)
+  Overlay(const terrain::Terrain& before, const terrain::Terrain& after, const frame::Ground& ground,
+          Voids voids)
       : after_(after),
         ground_(ground),
         to_after_(before.frame(), after.frame()),
@@ -125,9 +130,7 @@ class Overlay {
     }
   }
 
-  CutFill result() const {
-    return {cut_.area(), fill_.area(), equal_.area(), cut_.volume(), fill_.volume()};
-  }
+  CutFill result() const { return {cut_.area(), fill_.area(), equal_.area(), cut_.volume(), fill_.volume()}; }
 
  private:
   void meet(const Plane& before, const Convex& part, double sign) {
@@ -135,8 +138,9 @@ class Overlay {
     flood_.visit(there.corners[0], there.corners[1], there.corners[2], [&](TriangleSlot t) {
       const Slots corners = canonical_corners(after_.mesh(), t);
       const Facet other(after_, corners);
-      const Convex common = clip_to_triangle(part, to_before_(frame::place(other.a())), to_before_(frame::place(other.b())),
-                                             to_before_(frame::place(other.c())));
+      const Convex common =
+          clip_to_triangle(part, to_before_(frame::place(other.a())), to_before_(frame::place(other.b())),
+                           to_before_(frame::place(other.c())));
       if (common.empty()) return;
       const Plane after = other.plane();
       if (!voids_.may_touch(corners)) return compare(before, after, common, sign);
@@ -153,7 +157,8 @@ class Overlay {
       most = std::max(most, rise(p));
     }
     const double same = 1e-12 * height_;
-    if (least >= -same && most <= same) return equal_.add(integrate(ground_, common, [](Place) { return 0.0; }), sign);
+    if (least >= -same && most <= same)
+      return equal_.add(integrate(ground_, common, [](Place) { return 0.0; }), sign);
     const auto fall = [&](Place p) { return -rise(p); };
     if (most > same) fill_.add(integrate(ground_, least < 0 ? clip(common, rise) : common, rise), sign);
     if (least < -same) cut_.add(integrate(ground_, most > 0 ? clip(common, fall) : common, fall), sign);
@@ -171,8 +176,8 @@ class Overlay {
 
 }  // namespace
 
-Result<CutFill> cut_fill(const terrain::Terrain& before, const terrain::Terrain& after, const frame::Ground& ground,
-                         const Where& where, base::Progress* progress) {
+Result<CutFill> cut_fill(const terrain::Terrain& before, const terrain::Terrain& after,
+                         const frame::Ground& ground, const Where& where, base::Progress* progress) {
   if (before.frame().crs != after.frame().crs) {
     return base::error(base::Code::kInvalidValue, "The two TINs are in different CRSs.");
   }

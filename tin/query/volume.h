@@ -1,5 +1,5 @@
-// Volumes and areas: of a terrain against a level, and between two terrains. Clipped and integrated piece by piece, without
-// sampling.
+// Volumes and areas: of a terrain against a level, and between two terrains. Clipped and integrated piece by
+// piece, without sampling.
 #pragma once
 
 #include "tin/base/progress.h"
@@ -24,11 +24,11 @@ struct LevelVolumes {
   double volume_below = 0;                // between lower ground and the level
 };
 
-/// The surface against a level, in the vertical unit. Equal for every history of the same set. Zero where there is no surface.
-/// Errors: kCancelled. Cost: O(triangles) (with a region: those it meets, once per triangle of the region), and the cells
-/// of voids.
-base::Result<LevelVolumes> volumes_at(const terrain::Terrain& terrain, const frame::Ground& ground, double level,
-                                      const Where& where, base::Progress* progress = nullptr);
+/// The surface against a level, in the vertical unit. Equal for every history of the same set. Zero where
+/// there is no surface. Errors: kCancelled. Cost: O(triangles) (with a region: those it meets, once per
+/// triangle of the region), and the cells of voids.
+base::Result<LevelVolumes> volumes_at(const terrain::Terrain& terrain, const frame::Ground& ground,
+                                      double level, const Where& where, base::Progress* progress = nullptr);
 
 /// Square metres.
 struct SurfaceArea {
@@ -36,21 +36,24 @@ struct SurfaceArea {
   double surface = 0;  // along the slopes
 };
 /// As volumes_at().
-base::Result<SurfaceArea> surface_area(const terrain::Terrain& terrain, const frame::Ground& ground, const Where& where,
-                                       base::Progress* progress = nullptr);
+base::Result<SurfaceArea> surface_area(const terrain::Terrain& terrain, const frame::Ground& ground,
+                                       const Where& where, base::Progress* progress = nullptr);
 
 /// What it takes to turn one surface into another, in square and cubic metres.
 struct CutFill {
-  double cut_area = 0, fill_area = 0, equal_area = 0;  // in the plan; together the area that both surfaces cover
-  double cut_volume = 0;                               // where `after` lies below `before`
-  double fill_volume = 0;                              // where it lies above
+  double cut_area = 0, fill_area = 0,
+         equal_area = 0;   // in the plan; together the area that both surfaces cover
+  double cut_volume = 0;   // where `after` lies below `before`
+  double fill_volume = 0;  // where it lies above
 };
 
-/// Exact on the overlay of both triangulations: each pair of triangles that overlap is intersected. Differences below 1e-12 of the
-/// elevations count as equal. `where` is about `before`; voids are those of either. The terrains may have frames of their own in one
-/// CRS; elevations are compared in metres. Equal for every history of the same sets.
-/// Errors: kInvalidValue (different CRSs), kCancelled. Cost: O(pairs that overlap).
-base::Result<CutFill> cut_fill(const terrain::Terrain& before, const terrain::Terrain& after, const frame::Ground& ground,
-                               const Where& where, base::Progress* progress = nullptr);
+/// Exact on the overlay of both triangulations: each pair of triangles that overlap is intersected.
+/// Differences below 1e-12 of the elevations count as equal. `where` is about `before`; voids are those of
+/// either. The terrains may have frames of their own in one CRS; elevations are compared in metres. Equal for
+/// every history of the same sets. Errors: kInvalidValue (different CRSs), kCancelled. Cost: O(pairs that
+/// overlap).
+base::Result<CutFill> cut_fill(const terrain::Terrain& before, const terrain::Terrain& after,
+                               const frame::Ground& ground, const Where& where,
+                               base::Progress* progress = nullptr);
 
 }  // namespace tin::query

@@ -43,7 +43,9 @@ inline tin::terrain::Terrain voided_terrain(const Heights& raster, std::int32_t 
   return terrain;
 }
 
-inline double plane(tin::exact::Point p) { return 3 + 0.25 * p.x - 0.5 * p.y; }
+inline double plane(tin::exact::Point p) {
+  return 3 + 0.25 * p.x - 0.5 * p.y;
+}
 
 struct NamedTerrain {
   std::string name;

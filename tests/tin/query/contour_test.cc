@@ -26,7 +26,8 @@ using tin::terrain::Edit;
 using tin::terrain::Insert;
 using tin::terrain::Terrain;
 
-std::vector<ContourLine> contours(const Terrain& terrain, const std::vector<double>& levels, const ContourOptions& options = {}) {
+std::vector<ContourLine> contours(const Terrain& terrain, const std::vector<double>& levels,
+                                  const ContourOptions& options = {}) {
   ContourTracer tracer(terrain, levels, options);
   std::vector<ContourLine> out;
   for (ContourLine line; tracer.next(line);) out.push_back(line);
@@ -52,7 +53,8 @@ Segments segments_of(const std::vector<ContourLine>& lines) {
   return out;
 }
 
-/// What each triangle has of a level, found from its corners alone: from the edge that rises on the right to that on the left.
+/// What each triangle has of a level, found from its corners alone: from the edge that rises on the right to
+/// that on the left.
 Segments expected_segments(const Terrain& terrain, double level) {
   Segments out;
   const auto& mesh = terrain.mesh();
@@ -83,8 +85,11 @@ void expect_complete(const Terrain& terrain, double level, const std::string& na
   // Rounding may differ by one part in 1024 of a step.
   std::size_t missing = 0;
   for (const auto& k : expected) {
-    missing += std::none_of(found.lower_bound({k[0] - 1, INT64_MIN, 0, 0}), found.upper_bound({k[0] + 1, INT64_MAX, INT64_MAX, INT64_MAX}),
-                            [&](const auto& f) { return std::abs(f[1] - k[1]) <= 1 && std::abs(f[2] - k[2]) <= 1 && std::abs(f[3] - k[3]) <= 1; });
+    missing += std::none_of(
+        found.lower_bound({k[0] - 1, INT64_MIN, 0, 0}),
+        found.upper_bound({k[0] + 1, INT64_MAX, INT64_MAX, INT64_MAX}), [&](const auto& f) {
+          return std::abs(f[1] - k[1]) <= 1 && std::abs(f[2] - k[2]) <= 1 && std::abs(f[3] - k[3]) <= 1;
+        });
   }
   EXPECT_EQ(missing, 0U) << name;
   // Joined: the lines are maximal, so no two of them meet end to start, unless at a vertex on the level.
@@ -110,7 +115,8 @@ TEST(ContourTest, HasTheSegmentOfEveryTriangleOnHardSets) {
 }
 
 TEST(ContourTest, OfAPlaneAreStraightAndEndAtTheHull) {
-  const Terrain terrain = support::terrain_of(support::grid_points(11, 11, 10), [](Point p) { return double(p.x); });
+  const Terrain terrain =
+      support::terrain_of(support::grid_points(11, 11, 10), [](Point p) { return double(p.x); });
   const auto lines = contours(terrain, {5, 30, 99.5});
   ASSERT_EQ(lines.size(), 3U);
   for (const ContourLine& line : lines) {
@@ -123,7 +129,8 @@ TEST(ContourTest, OfAPlaneAreStraightAndEndAtTheHull) {
 }
 
 TEST(ContourTest, OfAConeAreRingsAroundItsTip) {
-  const Terrain terrain = support::terrain_of(support::grid_points(41, 41, 10, {-200, -200}), [](Point p) { return 200 - std::hypot(p.x, p.y); });
+  const Terrain terrain = support::terrain_of(support::grid_points(41, 41, 10, {-200, -200}),
+                                              [](Point p) { return 200 - std::hypot(p.x, p.y); });
   const auto lines = contours(terrain, {50, 100, 150});
   ASSERT_EQ(lines.size(), 3U);
   for (const ContourLine& line : lines) {
@@ -135,30 +142,40 @@ TEST(ContourTest, OfAConeAreRingsAroundItsTip) {
       twice += a.x * b.y - a.y * b.x;
       EXPECT_NEAR(std::hypot(a.x, a.y), 200 - line.level, 0.5);
     }
-    EXPECT_NEAR(twice / 2, M_PI * (200 - line.level) * (200 - line.level), 100) << "counter-clockwise: the tip is on the left";
+    EXPECT_NEAR(twice / 2, M_PI * (200 - line.level) * (200 - line.level), 100)
+        << "counter-clockwise: the tip is on the left";
   }
   // A pit has them clockwise.
-  const Terrain pit = support::terrain_of(support::grid_points(21, 21, 10, {-100, -100}), [](Point p) { return std::hypot(p.x, p.y); });
+  const Terrain pit = support::terrain_of(support::grid_points(21, 21, 10, {-100, -100}),
+                                          [](Point p) { return std::hypot(p.x, p.y); });
   const auto ring = contours(pit, {55});
   ASSERT_EQ(ring.size(), 1U);
   double twice = 0;
-  for (std::size_t i = 1; i < ring[0].places.size(); ++i) twice += ring[0].places[i - 1].x * ring[0].places[i].y - ring[0].places[i - 1].y * ring[0].places[i].x;
+  for (std::size_t i = 1; i < ring[0].places.size(); ++i)
+    twice += ring[0].places[i - 1].x * ring[0].places[i].y - ring[0].places[i - 1].y * ring[0].places[i].x;
   EXPECT_LT(twice, 0);
 }
 
 TEST(ContourTest, RunsAlongTheLowerBorderOfLevelGroundAtItsLevel) {
-  // A plateau of height 10 on a plain of 0: at 10 the line is the plateau's rim, at 0 there is none (all is above).
+  // A plateau of height 10 on a plain of 0: at 10 the line is the plateau's rim, at 0 there is none (all is
+  // above).
   const Terrain terrain = support::terrain_of(support::grid_points(10, 10, 10), [](Point p) {
     return p.x >= 30 && p.x <= 60 && p.y >= 30 && p.y <= 60 ? 10.0 : 0.0;
   });
   const auto rim = contours(terrain, {10});
   ASSERT_EQ(rim.size(), 1U);
   EXPECT_TRUE(rim[0].closed);
-  for (const Place& p : rim[0].places) EXPECT_TRUE(p.x == 30 || p.x == 60 || p.y == 30 || p.y == 60) << p.x << ' ' << p.y;
+  for (const Place& p : rim[0].places)
+    EXPECT_TRUE(p.x == 30 || p.x == 60 || p.y == 30 || p.y == 60) << p.x << ' ' << p.y;
   EXPECT_TRUE(contours(terrain, {0}).empty());
   EXPECT_TRUE(contours(terrain, {10.5}).empty());
   // A single vertex at the level is a ring without length: nothing.
-  EXPECT_TRUE(contours(support::terrain_of(support::grid_points(3, 3, 10), [](Point p) { return p == Point{10, 10} ? 1.0 : 0.0; }), {1}).empty());
+  EXPECT_TRUE(contours(support::terrain_of(support::grid_points(3, 3, 10),
+                                           [](Point p) {
+                                             return p == Point{10, 10} ? 1.0 : 0.0;
+                                           }),
+                       {1})
+                  .empty());
 }
 
 TEST(ContourTest, StopsAtVoidsAndGoesOnBehindThem) {
@@ -172,7 +189,8 @@ TEST(ContourTest, StopsAtVoidsAndGoesOnBehindThem) {
   ASSERT_EQ(parts.size(), 2U);
   const auto length = [](const ContourLine& line) {
     double sum = 0;
-    for (std::size_t i = 1; i < line.places.size(); ++i) sum += std::hypot(line.places[i].x - line.places[i - 1].x, line.places[i].y - line.places[i - 1].y);
+    for (std::size_t i = 1; i < line.places.size(); ++i)
+      sum += std::hypot(line.places[i].x - line.places[i - 1].x, line.places[i].y - line.places[i - 1].y);
     return sum;
   };
   EXPECT_NEAR(length(whole[0]), 80, 1e-9);
@@ -186,7 +204,8 @@ TEST(ContourTest, StopsAtVoidsAndGoesOnBehindThem) {
 }
 
 TEST(ContourTest, IsCutByABox) {
-  const Terrain terrain = support::terrain_of(support::grid_points(41, 41, 10, {-200, -200}), [](Point p) { return 200 - std::hypot(p.x, p.y); });
+  const Terrain terrain = support::terrain_of(support::grid_points(41, 41, 10, {-200, -200}),
+                                              [](Point p) { return 200 - std::hypot(p.x, p.y); });
   ContourOptions half;
   half.box = PlaceBox{{0, -300}, {300, 300}};
   const auto lines = contours(terrain, {100}, half);
@@ -210,9 +229,13 @@ TEST(ContourTest, DoesNotDependOnTheHistoryIfIdsAreTheSame) {
   support::Random random(support::seed());
   SCOPED_TRACE("TINSMITH_SEED=" + std::to_string(support::seed()));
   std::uniform_int_distribution<int> whole(0, 9);
-  const Terrain built = support::terrain_of(support::random_points(random, 300, 1000), [&](Point) { return whole(random); });
+  const Terrain built =
+      support::terrain_of(support::random_points(random, 300, 1000), [&](Point) { return whole(random); });
   Terrain edited = built;
-  const auto applied = edited.apply(std::vector<Edit>{Insert{{7, 2000}, 50}, tin::terrain::Remove{tin::terrain::VertexId(3)}, Insert{{3, 3}, 4}}, Duplicates::kReplace);
+  const auto applied =
+      edited.apply(std::vector<Edit>{Insert{{7, 2000}, 50}, tin::terrain::Remove{tin::terrain::VertexId(3)},
+                                     Insert{{3, 3}, 4}},
+                   Duplicates::kReplace);
   ASSERT_TRUE(applied.ok());
   EXPECT_EQ(contours(edited, {4.5}).empty(), false);
   ASSERT_TRUE(edited.replay(applied->change.inverse()).ok());
@@ -230,12 +253,15 @@ TEST(ContourTest, DoesNotDependOnTheHistoryIfIdsAreTheSame) {
 }
 
 TEST(ContourTest, OfDegenerateTerrainsIsNothing) {
-  for (const auto& [name, terrain] : support::degenerate_terrains()) EXPECT_TRUE(contours(terrain, {-5, 0, 1, 5}).empty()) << name;
+  for (const auto& [name, terrain] : support::degenerate_terrains())
+    EXPECT_TRUE(contours(terrain, {-5, 0, 1, 5}).empty()) << name;
   EXPECT_TRUE(contours(support::terrain_of(support::grid_points(3, 3, 10), support::plane), {}).empty());
 }
 
 TEST(ContourLevelsTest, AreMultiplesWithinTheRange) {
-  const Terrain terrain = support::terrain_of({{0, 0}, {10, 0}, {0, 10}}, [](Point p) { return p.x == 10 ? 25.0 : p.y == 10 ? 9.5 : 12; });
+  const Terrain terrain = support::terrain_of({{0, 0}, {10, 0}, {0, 10}}, [](Point p) {
+    return p.x == 10 ? 25.0 : p.y == 10 ? 9.5 : 12;
+  });
   EXPECT_EQ(*contour_levels(terrain, 5, 0, 10), (std::vector<double>{10, 15, 20, 25}));
   EXPECT_EQ(*contour_levels(terrain, 10, 2, 10), (std::vector<double>{12, 22}));
   EXPECT_EQ(contour_levels(terrain, 5, 0, 4)->size(), 4U);

@@ -27,19 +27,22 @@ constexpr std::int32_t kSize = 60;
 
 /// Hills without a height on a level, by column and row of pixel centres; row 0 in the north.
 double hill(std::int32_t column, std::int32_t row) {
-  return 100 + 37.1 * std::sin(column * 0.21) * std::cos(row * 0.17) + 11.3 * std::cos(column * 0.05 + row * 0.31) + 0.0123;
+  return 100 + 37.1 * std::sin(column * 0.21) * std::cos(row * 0.17) +
+         11.3 * std::cos(column * 0.05 + row * 0.31) + 0.0123;
 }
 
 /// One lattice step is a tenth of a pixel; the centre of column c, row r is at (10 c, -10 r).
 Terrain hills() {
-  return support::terrain_of(support::grid_points(kSize, kSize, 10, {0, -10 * (kSize - 1)}), [](Point p) { return hill(p.x / 10, -p.y / 10); });
+  return support::terrain_of(support::grid_points(kSize, kSize, 10, {0, -10 * (kSize - 1)}),
+                             [](Point p) { return hill(p.x / 10, -p.y / 10); });
 }
 
 std::string write_raster(const TempDir& folder) {
   const std::string path = (folder.path() / "hills.asc").string();
   std::ofstream file(path);
   file.precision(17);
-  file << "ncols " << kSize << "\nnrows " << kSize << "\nxllcorner -5\nyllcorner " << -10 * (kSize - 1) - 5 << "\ncellsize 10\n";
+  file << "ncols " << kSize << "\nnrows " << kSize << "\nxllcorner -5\nyllcorner " << -10 * (kSize - 1) - 5
+       << "\ncellsize 10\n";
   for (std::int32_t r = 0; r < kSize; ++r) {
     for (std::int32_t c = 0; c < kSize; ++c) file << hill(c, r) << (c + 1 < kSize ? ' ' : '\n');
   }
@@ -48,7 +51,8 @@ std::string write_raster(const TempDir& folder) {
 
 double length(const std::vector<Place>& places) {
   double sum = 0;
-  for (std::size_t i = 1; i < places.size(); ++i) sum += std::hypot(places[i].x - places[i - 1].x, places[i].y - places[i - 1].y);
+  for (std::size_t i = 1; i < places.size(); ++i)
+    sum += std::hypot(places[i].x - places[i - 1].x, places[i].y - places[i - 1].y);
   return sum;
 }
 
@@ -66,7 +70,8 @@ double distance_to(const ContourLine& line, Place p) {
 TEST(GdalContourTest, CrossesTheRastersRowsAndColumnsWhereOursDo) {
   const TempDir folder;
   const std::string raster = write_raster(folder), out = (folder.path() / "contours.json").string();
-  const auto done = run({"gdal_contour", "-q", "-a", "level", "-i", "10", "-f", "GeoJSON", "-lco", "COORDINATE_PRECISION=9", raster, out});
+  const auto done = run({"gdal_contour", "-q", "-a", "level", "-i", "10", "-f", "GeoJSON", "-lco",
+                         "COORDINATE_PRECISION=9", raster, out});
   ASSERT_EQ(done.status, 0) << done.err;
   std::ifstream file(out);
   const Json theirs = Json::parse(file);
@@ -83,7 +88,8 @@ TEST(GdalContourTest, CrossesTheRastersRowsAndColumnsWhereOursDo) {
   for (const Json& feature : theirs.at("features")) {
     const double level = feature.at("properties").at("level");
     std::vector<Place> at;
-    for (const Json& p : feature.at("geometry").at("coordinates")) at.push_back({p[0].get<double>(), p[1].get<double>()});
+    for (const Json& p : feature.at("geometry").at("coordinates"))
+      at.push_back({p[0].get<double>(), p[1].get<double>()});
     their_length[level] += length(at);
     for (const Place& p : at) {
       // GDAL extends the raster by half a pixel to its edges; ours ends at the outer centres.
@@ -108,7 +114,8 @@ TEST(GdalSlopeTest, IsOursAtTheVerticesWithinTheErrorOfItsDifferences) {
   const std::string tif = (folder.path() / "slope.tif").string();
   const auto made = run({"gdaldem", "slope", "-q", "-alg", "ZevenbergenThorne", raster, tif});
   ASSERT_EQ(made.status, 0) << made.err;
-  ASSERT_EQ(run({"gdal_translate", "-q", "-of", "AAIGrid", "-co", "DECIMAL_PRECISION=9", tif, out}).status, 0);
+  ASSERT_EQ(run({"gdal_translate", "-q", "-of", "AAIGrid", "-co", "DECIMAL_PRECISION=9", tif, out}).status,
+            0);
   std::ifstream file(out);
   std::string word;
   for (int i = 0; i < 12; ++i) file >> word;

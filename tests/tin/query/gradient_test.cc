@@ -74,7 +74,8 @@ TEST(GradientTest, IsNothingOutsideAndWithoutTriangles) {
   const Ground ground = support::metre_ground();
   for (const auto& [name, terrain] : support::degenerate_terrains()) {
     GradientQuery query(terrain, Voids::kKeep, ground);
-    for (const Point p : {Point{4, 7}, Point{0, 0}, Point{6, 0}}) EXPECT_EQ(query.at(p), std::nullopt) << name;
+    for (const Point p : {Point{4, 7}, Point{0, 0}, Point{6, 0}})
+      EXPECT_EQ(query.at(p), std::nullopt) << name;
   }
   const Terrain terrain = support::terrain_of(support::grid_points(3, 3, 10), support::plane);
   GradientQuery query(terrain, Voids::kKeep, ground);

@@ -25,7 +25,16 @@ Sight sight(const Terrain& terrain, const SightRequest& request) {
 
 /// A ridge across the middle of level ground: 10 high at x = 500.
 Terrain ridge() {
-  return support::terrain_of({{0, 0}, {400, 0}, {500, 0}, {600, 0}, {1000, 0}, {0, 100}, {400, 100}, {500, 100}, {600, 100}, {1000, 100}},
+  return support::terrain_of({{0, 0},
+                              {400, 0},
+                              {500, 0},
+                              {600, 0},
+                              {1000, 0},
+                              {0, 100},
+                              {400, 100},
+                              {500, 100},
+                              {600, 100},
+                              {1000, 100}},
                              [](Point p) { return p.x == 500 ? 10.0 : 0.0; });
 }
 
@@ -52,7 +61,9 @@ TEST(LineOfSightTest, TouchingTheGroundDoesNotBlock) {
   const Terrain slope = support::terrain_of(support::random_points(random, 300, 1000), support::plane);
   ElevationQuery query(slope, Voids::kKeep);
   for (const Point p : support::random_points(random, 200, 700)) {
-    if (query.at(p)) { EXPECT_TRUE(sight(slope, {{0, 0}, p}).visible); }
+    if (query.at(p)) {
+      EXPECT_TRUE(sight(slope, {{0, 0}, p}).visible);
+    }
   }
 }
 
@@ -60,13 +71,15 @@ TEST(LineOfSightTest, IsTheSameFromBothEnds) {
   support::Random random(support::seed());
   SCOPED_TRACE("TINSMITH_SEED=" + std::to_string(support::seed()));
   std::uniform_real_distribution<double> height(0, 50);
-  const Terrain terrain = support::terrain_of(support::random_points(random, 200, 1000), [&](Point) { return height(random); });
+  const Terrain terrain =
+      support::terrain_of(support::random_points(random, 200, 1000), [&](Point) { return height(random); });
   const auto at = support::random_points(random, 60, 600);
   ElevationQuery query(terrain, Voids::kKeep);
   int blocked = 0;
   for (std::size_t i = 1; i < at.size(); ++i) {
     if (!query.at(at[i - 1]) || !query.at(at[i])) continue;
-    const Sight there = sight(terrain, {at[i - 1], at[i], 20, 15, true}), back = sight(terrain, {at[i], at[i - 1], 15, 20, true});
+    const Sight there = sight(terrain, {at[i - 1], at[i], 20, 15, true}),
+                back = sight(terrain, {at[i], at[i - 1], 15, 20, true});
     EXPECT_EQ(there.visible, back.visible);
     EXPECT_NEAR(there.closest.clearance, back.closest.clearance, 1e-9);
     // The least clearance, by trying many places.
@@ -81,7 +94,8 @@ TEST(LineOfSightTest, IsTheSameFromBothEnds) {
       least = std::min(least, line - query.at(p)->z);
     }
     EXPECT_NEAR(there.closest.clearance, least, 2.0);
-    EXPECT_LE(there.closest.clearance, least + 1e-3 + 0.5) << "no place tried is lower, but for rounding to the lattice";
+    EXPECT_LE(there.closest.clearance, least + 1e-3 + 0.5)
+        << "no place tried is lower, but for rounding to the lattice";
     if (!there.visible) ++blocked;
   }
   EXPECT_GT(blocked, 5);
@@ -89,7 +103,8 @@ TEST(LineOfSightTest, IsTheSameFromBothEnds) {
 
 TEST(LineOfSightTest, OverASeaEndsAtTheHorizon) {
   // From 2 m above the sea the horizon without refraction is sqrt(2 R h) = 5048.2 m away.
-  const Terrain sea = support::terrain_of({{0, -10}, {20'000, -10}, {20'000, 10}, {0, 10}}, [](Point) { return 0.0; });
+  const Terrain sea =
+      support::terrain_of({{0, -10}, {20'000, -10}, {20'000, 10}, {0, 10}}, [](Point) { return 0.0; });
   SightRequest request{{0, 0}, {0, 0}, 2, 0, true, 0};
   request.target = {5040, 0};
   EXPECT_TRUE(sight(sea, request).visible);
@@ -115,7 +130,9 @@ TEST(LineOfSightTest, NeedsASurfaceAtBothEnds) {
   EXPECT_EQ(line_of_sight(terrain, ground, {{0, 50}, {1001, 50}}, 1000).error().where, "target");
   for (const auto& [name, degenerate] : support::degenerate_terrains()) {
     const auto found = line_of_sight(degenerate, ground, {{0, 0}, {6, 0}}, 1000);
-    if (found) { EXPECT_TRUE(found->visible) << name; }
+    if (found) {
+      EXPECT_TRUE(found->visible) << name;
+    }
   }
   const Sight here = sight(terrain, {{10, 10}, {10, 10}, 1, 2});
   EXPECT_TRUE(here.visible);

@@ -30,7 +30,8 @@ std::map<Point, double> weights_at(const Terrain& terrain, Point p) {
   const auto where = terrain.triangulation().locate(p);
   std::map<Point, double> out;
   if (where.kind == Kind::kOutsideHull) return out;
-  for (const auto& [vertex, weight] : neighbours.at(p, where.triangle)) out[terrain.mesh().point(vertex)] = weight;
+  for (const auto& [vertex, weight] : neighbours.at(p, where.triangle))
+    out[terrain.mesh().point(vertex)] = weight;
   return out;
 }
 
@@ -124,7 +125,9 @@ TEST(NaturalNeighbourElevationTest, IsTheVertexsOwnAtAVertexAndContinuousThere) 
     EXPECT_EQ(natural_z(terrain, v), wave(v));
     for (const Point step : {Point{1, 0}, Point{0, 1}, Point{-1, 0}, Point{0, -1}, Point{1, -1}}) {
       const auto beside = natural_z(terrain, {v.x + step.x, v.y + step.y});
-      if (beside) { EXPECT_NEAR(*beside, wave(v), 0.05); }
+      if (beside) {
+        EXPECT_NEAR(*beside, wave(v), 0.05);
+      }
     }
   }
 }
@@ -139,14 +142,16 @@ TEST(NaturalNeighbourElevationTest, IsContinuousAcrossEdgesAndCoincidingCircles)
   for (std::int32_t i = 0; i < 40'000; i += 7) {
     const auto z = natural_z(terrain, {i, i / 3 + 11'000});
     ASSERT_TRUE(z.has_value());
-    if (last) { EXPECT_NEAR(*z, *last, 0.2); }
+    if (last) {
+      EXPECT_NEAR(*z, *last, 0.2);
+    }
     last = z;
   }
 }
 
 TEST(NaturalNeighbourElevationTest, IsLinearAlongTheHull) {
-  const Terrain terrain =
-      support::terrain_of({{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}, {400, 300}}, [](Point p) { return p.x * 0.5 + (p.y > 0 ? 90 : 0); });
+  const Terrain terrain = support::terrain_of({{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}, {400, 300}},
+                                              [](Point p) { return p.x * 0.5 + (p.y > 0 ? 90 : 0); });
   EXPECT_EQ(natural_z(terrain, {250, 0}), 125);
   EXPECT_NEAR(*natural_z(terrain, {250, 1}), 125, 0.5);
   EXPECT_EQ(natural_z(terrain, {250, -1}), std::nullopt);
@@ -161,17 +166,22 @@ TEST(NaturalNeighbourElevationTest, DoesNotDependOnTheHistory) {
   std::shuffle(points.begin(), points.end(), random);
   Terrain edited = support::terrain_of({}, wave);
   for (const Point p : points)
-    ASSERT_TRUE(edited.apply(std::vector<Edit>{Insert{p, wave(p)}, Insert{{p.x + 1, p.y + 1000}, 5}}, Duplicates::kReject).ok());
+    ASSERT_TRUE(edited
+                    .apply(std::vector<Edit>{Insert{p, wave(p)}, Insert{{p.x + 1, p.y + 1000}, 5}},
+                           Duplicates::kReject)
+                    .ok());
   for (std::uint64_t id = 2; id <= 400; id += 2)
     ASSERT_TRUE(edited.apply(std::vector<Edit>{Remove{VertexId(id)}}, Duplicates::kReject).ok());
   ASSERT_EQ(tin::mesh::validate(edited.mesh()), std::nullopt);
-  for (const Point p : support::random_points(random, 500, 300)) EXPECT_EQ(natural_z(built, p), natural_z(edited, p));
+  for (const Point p : support::random_points(random, 500, 300))
+    EXPECT_EQ(natural_z(built, p), natural_z(edited, p));
 }
 
 TEST(NaturalNeighbourElevationTest, OfATerrainWithoutTrianglesIsTheLinearOne) {
   for (const auto& [name, terrain] : support::degenerate_terrains()) {
     ElevationQuery linear(terrain, Voids::kKeep);
-    for (const Point p : {Point{4, 7}, Point{5, 10}, Point{6, 0}, Point{0, 6}, Point{3, -2}, Point{100, 100}}) {
+    for (const Point p :
+         {Point{4, 7}, Point{5, 10}, Point{6, 0}, Point{0, 6}, Point{3, -2}, Point{100, 100}}) {
       const auto found = linear.at(p);
       EXPECT_EQ(natural_z(terrain, p), found ? std::optional(found->z) : std::nullopt) << name;
     }

@@ -33,7 +33,8 @@ std::vector<std::int32_t> ordinates(std::int32_t first, std::int32_t step, std::
 }
 
 /// Each pixel against the query for its centre, bit for bit.
-void expect_as_queried(const Terrain& terrain, const PixelCentres& centres, Voids voids, const std::string& name) {
+void expect_as_queried(const Terrain& terrain, const PixelCentres& centres, Voids voids,
+                       const std::string& name) {
   const auto ground = support::metre_ground();
   for (const RasterLayer layer :
        {RasterLayer::kElevation, RasterLayer::kSlope, RasterLayer::kAspect, RasterLayer::kHillshade}) {
@@ -67,8 +68,10 @@ void expect_as_queried(const Terrain& terrain, const PixelCentres& centres, Void
 /// Pixels over the terrain and a margin around it, so many each way.
 PixelCentres over(const Terrain& terrain, std::int32_t count, bool north_up) {
   const auto box = terrain.bounds().value_or(tin::terrain::Box{{-5, -5}, {5, 5}});
-  const std::int64_t width = std::int64_t{box.max.x} - box.min.x, height = std::int64_t{box.max.y} - box.min.y;
-  const auto step_x = static_cast<std::int32_t>(width / count + 1), step_y = static_cast<std::int32_t>(height / count + 1);
+  const std::int64_t width = std::int64_t{box.max.x} - box.min.x,
+                     height = std::int64_t{box.max.y} - box.min.y;
+  const auto step_x = static_cast<std::int32_t>(width / count + 1),
+             step_y = static_cast<std::int32_t>(height / count + 1);
   const auto n = static_cast<std::size_t>(count) + 4;
   PixelCentres out{ordinates(box.min.x - step_x, step_x, n), ordinates(box.min.y - step_y, step_y, n)};
   if (north_up) std::reverse(out.y.begin(), out.y.end());
@@ -89,7 +92,8 @@ TEST(RasterTest, EqualsTheQueriesOnHardSets) {
 TEST(RasterTest, EqualsTheQueriesOnEveryLatticePointOfAGrid) {
   support::Random random(support::seed());
   std::uniform_real_distribution<double> height(0, 50);
-  const Terrain terrain = support::terrain_of(support::grid_points(9, 7, 6), [&](Point) { return height(random); });
+  const Terrain terrain =
+      support::terrain_of(support::grid_points(9, 7, 6), [&](Point) { return height(random); });
   expect_as_queried(terrain, {ordinates(-2, 1, 55), ordinates(40, -1, 45)}, Voids::kKeep, "grid");
 }
 
@@ -101,7 +105,11 @@ TEST(RasterTest, EqualsTheQueriesWhereVoidsAre) {
     expect_as_queried(terrain, over(terrain, 90, true), Voids::kKeep, name);
     expect_as_queried(terrain, over(terrain, 31, true), Voids::kFill, name);
     const auto box = *terrain.bounds();
-    ASSERT_TRUE(terrain.apply(std::vector<Edit>{Insert{{(box.min.x + box.max.x) / 2 + 1, (box.min.y + box.max.y) / 2}, 9}}, Duplicates::kReplace).ok());
+    ASSERT_TRUE(terrain
+                    .apply(std::vector<Edit>{Insert{
+                               {(box.min.x + box.max.x) / 2 + 1, (box.min.y + box.max.y) / 2}, 9}},
+                           Duplicates::kReplace)
+                    .ok());
     ASSERT_EQ(tin::mesh::validate(terrain.mesh()), std::nullopt);
     expect_as_queried(terrain, over(terrain, 31, true), Voids::kKeep, name + " edited");
   }
@@ -110,9 +118,11 @@ TEST(RasterTest, EqualsTheQueriesWhereVoidsAre) {
 TEST(RasterTest, HasManyStripsAndTrianglesAcrossThem) {
   support::Random random(support::seed());
   std::uniform_real_distribution<double> height(0, 50);
-  const Terrain terrain = support::terrain_of(support::random_points(random, 40, 1000), [&](Point) { return height(random); });
+  const Terrain terrain =
+      support::terrain_of(support::random_points(random, 40, 1000), [&](Point) { return height(random); });
   expect_as_queried(terrain, {ordinates(-1000, 90, 23), ordinates(1050, -3, 700)}, Voids::kKeep, "tall");
-  expect_as_queried(terrain, {ordinates(-1000, 90, 23), ordinates(-1050, 3, 700)}, Voids::kKeep, "tall, south up");
+  expect_as_queried(terrain, {ordinates(-1000, 90, 23), ordinates(-1050, 3, 700)}, Voids::kKeep,
+                    "tall, south up");
 }
 
 TEST(RasterTest, GoesBackWhenAskedTo) {
@@ -140,8 +150,9 @@ TEST(RasterTest, TakesCentresThatCoincideOrLieBeyondTheLattice) {
 
 TEST(RasterTest, OfHugeTrianglesIsRoundedAsTheQueries) {
   const std::int32_t half = tin::exact::kLatticeHalf;
-  const Terrain terrain = support::terrain_of({{-half, -half}, {half - 1, -half + 3}, {half - 5, half - 1}, {-half + 9, half - 3}, {77, -13}},
-                                              [](Point p) { return std::sin(p.x) * 1000; });
+  const Terrain terrain = support::terrain_of(
+      {{-half, -half}, {half - 1, -half + 3}, {half - 5, half - 1}, {-half + 9, half - 3}, {77, -13}},
+      [](Point p) { return std::sin(p.x) * 1000; });
   expect_as_queried(terrain, over(terrain, 50, true), Voids::kKeep, "huge");
 }
 

@@ -58,7 +58,24 @@ TEST(RegionTest, CutsRingsOfEitherOrientationIntoTrianglesOfTheirArea) {
   expect_cut_well(square);
   expect_cut_well({{0, 0}, {5, 0}, {10, 0}, {10, 10}, {5, 10}, {0, 10}, {0, 5}});
   expect_cut_well({{0, 0}, {10, 0}, {10, 1}, {1, 1}, {1, 9}, {10, 9}, {10, 10}, {0, 10}});
-  expect_cut_well({{0, 0}, {30, 0}, {30, 30}, {6, 30}, {6, 10}, {18, 10}, {18, 20}, {12, 20}, {12, 14}, {14, 14}, {14, 18}, {16, 18}, {16, 12}, {8, 12}, {8, 26}, {26, 26}, {26, 4}, {0, 4}});
+  expect_cut_well({{0, 0},
+                   {30, 0},
+                   {30, 30},
+                   {6, 30},
+                   {6, 10},
+                   {18, 10},
+                   {18, 20},
+                   {12, 20},
+                   {12, 14},
+                   {14, 14},
+                   {14, 18},
+                   {16, 18},
+                   {16, 12},
+                   {8, 12},
+                   {8, 26},
+                   {26, 26},
+                   {26, 4},
+                   {0, 4}});
 }
 
 TEST(RegionTest, CutsStarsAndSpiralsOfManyCorners) {
@@ -69,13 +86,18 @@ TEST(RegionTest, CutsStarsAndSpiralsOfManyCorners) {
     Ring star;
     for (int i = 0; i < n; ++i) {
       const double r = radius(random), angle = 2 * M_PI * i / n;
-      star.push_back({static_cast<std::int32_t>(r * std::cos(angle)), static_cast<std::int32_t>(r * std::sin(angle))});
+      star.push_back(
+          {static_cast<std::int32_t>(r * std::cos(angle)), static_cast<std::int32_t>(r * std::sin(angle))});
     }
     expect_cut_well(star);
   }
   Ring spiral;
-  for (int i = 0; i <= 300; ++i) spiral.push_back({static_cast<std::int32_t>((1000 + 100 * i) * std::cos(i * 0.1)), static_cast<std::int32_t>((1000 + 100 * i) * std::sin(i * 0.1))});
-  for (int i = 300; i >= 0; --i) spiral.push_back({static_cast<std::int32_t>((3000 + 100 * i) * std::cos(i * 0.1)), static_cast<std::int32_t>((3000 + 100 * i) * std::sin(i * 0.1))});
+  for (int i = 0; i <= 300; ++i)
+    spiral.push_back({static_cast<std::int32_t>((1000 + 100 * i) * std::cos(i * 0.1)),
+                      static_cast<std::int32_t>((1000 + 100 * i) * std::sin(i * 0.1))});
+  for (int i = 300; i >= 0; --i)
+    spiral.push_back({static_cast<std::int32_t>((3000 + 100 * i) * std::cos(i * 0.1)),
+                      static_cast<std::int32_t>((3000 + 100 * i) * std::sin(i * 0.1))});
   expect_cut_well(spiral);
 }
 
@@ -86,7 +108,8 @@ TEST(RegionTest, DropsRepeatedPositions) {
 }
 
 TEST(RegionTest, TakesHolesInside) {
-  const Ring outline{{0, 0}, {100, 0}, {100, 100}, {0, 100}}, hole{{10, 10}, {20, 10}, {20, 30}}, other{{50, 50}, {60, 50}, {60, 60}, {50, 60}};
+  const Ring outline{{0, 0}, {100, 0}, {100, 100}, {0, 100}}, hole{{10, 10}, {20, 10}, {20, 30}},
+      other{{50, 50}, {60, 50}, {60, 60}, {50, 60}};
   const auto region = Region::make(std::vector<Ring>{outline, hole, other});
   ASSERT_TRUE(region.ok());
   EXPECT_EQ(twice_area(region->holes()), 200 + 200);

@@ -39,7 +39,9 @@ LevelVolumes volumes(const Terrain& terrain, double level, const Where& where = 
 CutFill between(const Terrain& before, const Terrain& after, const Where& where = {}) {
   return *tin::query::cut_fill(before, after, support::metre_ground(), where);
 }
-Region region(const std::vector<Ring>& rings) { return *Region::make(rings); }
+Region region(const std::vector<Ring>& rings) {
+  return *Region::make(rings);
+}
 
 TEST(FixedSumTest, DoesNotDependOnTheOrder) {
   support::Random random(support::seed());
@@ -64,7 +66,8 @@ TEST(LevelVolumesTest, OfAPlaneAreThoseOfItsWedges) {
   support::Random random(support::seed());
   auto points = support::random_points(random, 200, 49);
   for (Point& p : points) p = {p.x + 50, p.y + 50};
-  for (const Point corner : {Point{0, 0}, Point{100, 0}, Point{100, 100}, Point{0, 100}}) points.push_back(corner);
+  for (const Point corner : {Point{0, 0}, Point{100, 0}, Point{100, 100}, Point{0, 100}})
+    points.push_back(corner);
   const Terrain terrain = support::terrain_of(points, [](Point p) { return double(p.x); });
   const LevelVolumes v = volumes(terrain, 30);
   EXPECT_NEAR(v.volume_above, 245'000, 1e-6);
@@ -79,17 +82,20 @@ TEST(LevelVolumesTest, OfAPlaneAreThoseOfItsWedges) {
 }
 
 TEST(LevelVolumesTest, OfAConeApproachTheCones) {
-  // A cone of radius 1000 and height 500 by rings of 720 vertices: the polygon inside is smaller by (1 - sin(x)/x).
+  // A cone of radius 1000 and height 500 by rings of 720 vertices: the polygon inside is smaller by (1 -
+  // sin(x)/x).
   std::vector<Point> points{{0, 0}};
   const int n = 720;
   for (int ring = 1; ring <= 10; ++ring) {
     for (int i = 0; i < n; ++i) {
       const double angle = 2 * std::numbers::pi * i / n;
-      points.push_back({static_cast<std::int32_t>(std::lround(100'000.0 * ring * std::cos(angle))), static_cast<std::int32_t>(std::lround(100'000.0 * ring * std::sin(angle)))});
+      points.push_back({static_cast<std::int32_t>(std::lround(100'000.0 * ring * std::cos(angle))),
+                        static_cast<std::int32_t>(std::lround(100'000.0 * ring * std::sin(angle)))});
     }
   }
   const double radius = 1e6, height = 500;
-  const Terrain terrain = support::terrain_of(points, [&](Point p) { return height * (1 - std::hypot(p.x, p.y) / radius); });
+  const Terrain terrain =
+      support::terrain_of(points, [&](Point p) { return height * (1 - std::hypot(p.x, p.y) / radius); });
   const auto part = [](double v, double expected) { return v / expected; };
   const double pi = std::numbers::pi;
   EXPECT_NEAR(part(volumes(terrain, 0).volume_above, pi * radius * radius * height / 3), 1, 1e-4);
@@ -105,10 +111,14 @@ TEST(LevelVolumesTest, OfAParaboloidConvergeWithTheSquareOfTheCells) {
   const double exact = 2e9 / 3;
   double last = 0;
   for (const std::int32_t cells : {5, 10, 20, 40}) {
-    const Terrain terrain = support::terrain_of(support::grid_points(cells + 1, cells + 1, 1000 / cells), [](Point p) { return (double(p.x) * p.x + double(p.y) * p.y) / 1000; });
+    const Terrain terrain =
+        support::terrain_of(support::grid_points(cells + 1, cells + 1, 1000 / cells),
+                            [](Point p) { return (double(p.x) * p.x + double(p.y) * p.y) / 1000; });
     const double off = volumes(terrain, 0).volume_above - exact;
     EXPECT_GT(off, 0);
-    if (last > 0) { EXPECT_NEAR(last / off, 4, 0.2); }
+    if (last > 0) {
+      EXPECT_NEAR(last / off, 4, 0.2);
+    }
     last = off;
   }
 }
@@ -116,13 +126,15 @@ TEST(LevelVolumesTest, OfAParaboloidConvergeWithTheSquareOfTheCells) {
 TEST(LevelVolumesTest, WithinAPolygonAreThoseOfThePolygon) {
   support::Random random(support::seed());
   SCOPED_TRACE("TINSMITH_SEED=" + std::to_string(support::seed()));
-  const Terrain terrain = support::terrain_of(support::random_points(random, 500, 1000), [](Point p) { return 40 + 0.01 * p.x - 0.02 * p.y; });
+  const Terrain terrain = support::terrain_of(support::random_points(random, 500, 1000),
+                                              [](Point p) { return 40 + 0.01 * p.x - 0.02 * p.y; });
   // The integral of a plane over a polygon is its value at the centroid times the area.
   const Region square = region({{{-100, -200}, {300, -200}, {300, 200}, {-100, 200}}});
   const LevelVolumes v = volumes(terrain, 0, {&square, Voids::kKeep});
   EXPECT_NEAR(v.area_above, 160'000, 1e-6);
   EXPECT_NEAR(v.volume_above, 160'000 * (40 + 0.01 * 100), 1e-4);
-  const Region holed = region({{{-100, -200}, {300, -200}, {300, 200}, {-100, 200}}, {{0, 0}, {100, 0}, {100, 100}, {0, 100}}});
+  const Region holed = region(
+      {{{-100, -200}, {300, -200}, {300, 200}, {-100, 200}}, {{0, 0}, {100, 0}, {100, 100}, {0, 100}}});
   const LevelVolumes w = volumes(terrain, 0, {&holed, Voids::kKeep});
   EXPECT_NEAR(w.area_above, 150'000, 1e-6);
   EXPECT_NEAR(w.volume_above, v.volume_above - 10'000 * (40 + 0.5 - 1), 1e-4);
@@ -138,7 +150,9 @@ TEST(LevelVolumesTest, AreTheSumOfThoseOfTheParts) {
     const Terrain terrain = support::terrain_of(set.points, [&](Point) { return height(random); });
     if (terrain.mesh().dimension() < 2) continue;
     const auto box = *terrain.bounds();
-    const auto at = [](std::int32_t a, std::int32_t b, double u) { return static_cast<std::int32_t>(std::floor(a + u * (double(b) - a))); };
+    const auto at = [](std::int32_t a, std::int32_t b, double u) {
+      return static_cast<std::int32_t>(std::floor(a + u * (double(b) - a)));
+    };
     const std::int32_t x = at(box.min.x, box.max.x, 0.37), y = at(box.min.y, box.max.y, 0.61);
     const LevelVolumes whole = volumes(terrain, 20);
     LevelVolumes sum;
@@ -162,16 +176,19 @@ TEST(LevelVolumesTest, AreTheSumOfThoseOfTheParts) {
 }
 
 TEST(LevelVolumesTest, HoldForRegionsAroundAcrossAndBesideTheHull) {
-  const Terrain terrain = support::terrain_of({{0, 0}, {100, 0}, {100, 100}, {0, 100}}, [](Point) { return 2.0; });
+  const Terrain terrain =
+      support::terrain_of({{0, 0}, {100, 0}, {100, 100}, {0, 100}}, [](Point) { return 2.0; });
   const auto area = [&](const Ring& ring) {
     const Region where = region({ring});
     return volumes(terrain, 0, {&where, Voids::kKeep}).area_above;
   };
   EXPECT_DOUBLE_EQ(area({{-100, -100}, {200, -100}, {200, 200}, {-100, 200}}), 10'000) << "around";
-  EXPECT_DOUBLE_EQ(area({{-100, 40}, {200, 40}, {200, 60}, {-100, 60}}), 2000) << "across, all corners outside";
+  EXPECT_DOUBLE_EQ(area({{-100, 40}, {200, 40}, {200, 60}, {-100, 60}}), 2000)
+      << "across, all corners outside";
   EXPECT_DOUBLE_EQ(area({{50, 50}, {300, 50}, {300, 300}, {50, 300}}), 2500) << "over a corner";
   EXPECT_DOUBLE_EQ(area({{150, 50}, {300, 50}, {300, 300}, {150, 300}}), 0) << "beside";
-  EXPECT_DOUBLE_EQ(area({{150, -100}, {160, 300}, {-500, 260}, {-400, 240}, {140, 240}}), 0) << "around a corner";
+  EXPECT_DOUBLE_EQ(area({{150, -100}, {160, 300}, {-500, 260}, {-400, 240}, {140, 240}}), 0)
+      << "around a corner";
   EXPECT_DOUBLE_EQ(area({{100, 0}, {200, 0}, {200, 100}, {100, 100}}), 0) << "touching";
 }
 
@@ -186,24 +203,29 @@ TEST(LevelVolumesTest, LeaveVoidsOut) {
   EXPECT_NEAR(volumes(terrain, 1).volume_above, 2 * (2500 - 400), 1e-9);
   EXPECT_NEAR(volumes(terrain, 1, {nullptr, Voids::kFill}).area_above, 2500, 1e-9);
   const auto box = *terrain.bounds();
-  const Region left = region({{box.min, {(box.min.x + box.max.x) / 2, box.min.y}, {(box.min.x + box.max.x) / 2, box.max.y}, {box.min.x, box.max.y}}});
+  const Region left = region({{box.min,
+                               {(box.min.x + box.max.x) / 2, box.min.y},
+                               {(box.min.x + box.max.x) / 2, box.max.y},
+                               {box.min.x, box.max.y}}});
   EXPECT_NEAR(volumes(terrain, 1, {&left, Voids::kKeep}).area_above, (2500 - 400) / 2.0, 1e-9);
 }
 
 TEST(LevelVolumesTest, OnTheEllipsoidAreThoseOfTheBand) {
-  // Between 0 and 1 degree of longitude and 50 and 51 of latitude the ellipsoid has 7,915,553,000 m2, about; by the exact
-  // formula for the area between the equator and a latitude.
+  // Between 0 and 1 degree of longitude and 50 and 51 of latitude the ellipsoid has 7,915,553,000 m2, about;
+  // by the exact formula for the area between the equator and a latitude.
   const auto up_to = [](double degrees) {
     const double a = 6378137, f = 1 / 298.257223563, e = std::sqrt(f * (2 - f)), b2 = a * a * (1 - e * e);
     const double s = std::sin(degrees * std::numbers::pi / 180);
-    return b2 / 2 * (s / (1 - e * e * s * s) + std::log((1 + e * s) / (1 - e * s)) / (2 * e)) * std::numbers::pi / 180;
+    return b2 / 2 * (s / (1 - e * e * s * s) + std::log((1 + e * s) / (1 - e * s)) / (2 * e)) *
+           std::numbers::pi / 180;
   };
   Frame frame;
   frame.x = {0, 1, 1'000'000};
   frame.y = {50, 1, 1'000'000};
   for (const std::int32_t cells : {1, 10}) {
     std::vector<Placement> placements;
-    for (const Point p : support::grid_points(cells + 1, cells + 1, 1'000'000 / cells)) placements.push_back({p, 10});
+    for (const Point p : support::grid_points(cells + 1, cells + 1, 1'000'000 / cells))
+      placements.push_back({p, 10});
     const Terrain terrain = *Terrain::build(frame, placements, Duplicates::kReject);
     const Ground ground(frame, {.geographic = true});
     const auto v = *tin::query::volumes_at(terrain, ground, 7, {});
@@ -222,12 +244,14 @@ TEST(LevelVolumesTest, DoNotDependOnTheHistory) {
   const Terrain built = support::terrain_of(points, wave);
   std::shuffle(points.begin(), points.end(), random);
   Terrain edited = support::terrain_of({{900, 900}}, wave);
-  for (const Point p : points) ASSERT_TRUE(edited.apply(std::vector<Edit>{Insert{p, wave(p)}}, Duplicates::kReject).ok());
+  for (const Point p : points)
+    ASSERT_TRUE(edited.apply(std::vector<Edit>{Insert{p, wave(p)}}, Duplicates::kReject).ok());
   ASSERT_TRUE(edited.apply(std::vector<Edit>{Remove{VertexId(1)}}, Duplicates::kReject).ok());
   ASSERT_EQ(tin::mesh::validate(edited.mesh()), std::nullopt);
   const Region where = region({{{-200, -150}, {100, -210}, {190, 140}, {-50, 30}}});
   for (const Region* r : {static_cast<const Region*>(nullptr), &where}) {
-    const LevelVolumes a = volumes(built, 3.3, {r, Voids::kKeep}), b = volumes(edited, 3.3, {r, Voids::kKeep});
+    const LevelVolumes a = volumes(built, 3.3, {r, Voids::kKeep}),
+                       b = volumes(edited, 3.3, {r, Voids::kKeep});
     EXPECT_EQ(a.volume_above, b.volume_above);
     EXPECT_EQ(a.volume_below, b.volume_below);
     EXPECT_EQ(a.area_above, b.area_above);
@@ -240,20 +264,27 @@ TEST(LevelVolumesTest, OfDegenerateTerrainsAreZeroAndStopWhenAsked) {
     EXPECT_EQ(volumes(terrain, 1).area_above, 0) << name;
     const Region where = region({{{-9, -9}, {9, -9}, {9, 9}}});
     EXPECT_EQ(volumes(terrain, 1, {&where, Voids::kKeep}).area_above, 0) << name;
-    EXPECT_EQ(between(terrain, support::terrain_of(support::grid_points(3, 3, 10), support::plane)).fill_volume, 0) << name;
-    EXPECT_EQ(between(support::terrain_of(support::grid_points(3, 3, 10), support::plane), terrain).fill_volume, 0) << name;
+    EXPECT_EQ(
+        between(terrain, support::terrain_of(support::grid_points(3, 3, 10), support::plane)).fill_volume, 0)
+        << name;
+    EXPECT_EQ(
+        between(support::terrain_of(support::grid_points(3, 3, 10), support::plane), terrain).fill_volume, 0)
+        << name;
   }
   const Terrain terrain = support::terrain_of(support::grid_points(30, 30, 10), support::plane);
   tin::base::Progress progress;
   progress.cancel();
-  EXPECT_EQ(tin::query::volumes_at(terrain, support::metre_ground(), 0, {}, &progress).error().code, Code::kCancelled);
-  EXPECT_EQ(tin::query::cut_fill(terrain, terrain, support::metre_ground(), {}, &progress).error().code, Code::kCancelled);
+  EXPECT_EQ(tin::query::volumes_at(terrain, support::metre_ground(), 0, {}, &progress).error().code,
+            Code::kCancelled);
+  EXPECT_EQ(tin::query::cut_fill(terrain, terrain, support::metre_ground(), {}, &progress).error().code,
+            Code::kCancelled);
 }
 
 TEST(CutFillTest, OfATerrainWithItselfIsNothing) {
   support::Random random(support::seed());
   std::uniform_real_distribution<double> height(0, 50);
-  const Terrain terrain = support::terrain_of(support::random_points(random, 400, 1000), [&](Point) { return height(random); });
+  const Terrain terrain =
+      support::terrain_of(support::random_points(random, 400, 1000), [&](Point) { return height(random); });
   const CutFill c = between(terrain, terrain);
   EXPECT_EQ(c.cut_volume, 0);
   EXPECT_EQ(c.fill_volume, 0);
@@ -283,7 +314,8 @@ TEST(CutFillTest, OfTwoPlanesIsTheWedgesBetweenThem) {
   const auto square = [&] {
     auto points = support::random_points(random, 150, 49);
     for (Point& p : points) p = {p.x + 50, p.y + 50};
-    for (const Point corner : {Point{0, 0}, Point{100, 0}, Point{100, 100}, Point{0, 100}}) points.push_back(corner);
+    for (const Point corner : {Point{0, 0}, Point{100, 0}, Point{100, 100}, Point{0, 100}})
+      points.push_back(corner);
     return points;
   };
   const Terrain before = support::terrain_of(square(), [](Point p) { return double(p.x); });
@@ -301,8 +333,10 @@ TEST(CutFillTest, IsTheDifferenceOfTheVolumesWhereOneIsAboveTheOther) {
   std::uniform_real_distribution<double> height(0, 50);
   const Region where = region({{{-500, -400}, {520, -450}, {480, 430}, {-20, 100}, {-470, 510}}});
   for (int i = 0; i < 5; ++i) {
-    const Terrain before = support::terrain_of(support::random_points(random, 300, 1000), [&](Point) { return height(random); });
-    const Terrain after = support::terrain_of(support::random_points(random, 300, 1000), [&](Point) { return height(random); });
+    const Terrain before =
+        support::terrain_of(support::random_points(random, 300, 1000), [&](Point) { return height(random); });
+    const Terrain after =
+        support::terrain_of(support::random_points(random, 300, 1000), [&](Point) { return height(random); });
     const Where here{&where, Voids::kKeep};
     const CutFill c = between(before, after, here);
     const double expected = volumes(after, -10, here).volume_above - volumes(before, -10, here).volume_above;
@@ -315,7 +349,9 @@ TEST(CutFillTest, IsTheDifferenceOfTheVolumesWhereOneIsAboveTheOther) {
       for (std::int32_t y = -460; y < 520; y += 4) {
         bool inside = false;
         for (const auto& t : where.outline()) {
-          inside = inside || (tin::exact::orientation(t[0], t[1], {x, y}) > 0 && tin::exact::orientation(t[1], t[2], {x, y}) > 0 && tin::exact::orientation(t[2], t[0], {x, y}) > 0);
+          inside = inside || (tin::exact::orientation(t[0], t[1], {x, y}) > 0 &&
+                              tin::exact::orientation(t[1], t[2], {x, y}) > 0 &&
+                              tin::exact::orientation(t[2], t[0], {x, y}) > 0);
         }
         if (inside) fill += 16 * std::max(0.0, to.at({x, y})->z - from.at({x, y})->z);
       }
@@ -355,7 +391,9 @@ TEST(CutFillTest, LeavesVoidsOfEitherOut) {
       return 2.0;
     });
   };
-  const Terrain level = support::voided_terrain(full, 10, 10), left = support::voided_terrain(holed(1), 10, 10), right = support::voided_terrain(holed(3), 10, 10);
+  const Terrain level = support::voided_terrain(full, 10, 10),
+                left = support::voided_terrain(holed(1), 10, 10),
+                right = support::voided_terrain(holed(3), 10, 10);
   EXPECT_NEAR(between(level, left).fill_area, 2400, 1e-9);
   EXPECT_NEAR(between(left, level).cut_volume, 2400, 1e-9);
   EXPECT_NEAR(between(left, right).equal_area, 2300, 1e-9);
@@ -366,7 +404,8 @@ TEST(CutFillTest, RefusesDifferentReferenceSystems) {
   Frame frame;
   frame.crs = "EPSG:25832";
   const Terrain other = *Terrain::build(frame, std::vector<Placement>{{{0, 0}, 1}}, Duplicates::kReject);
-  const auto refused = tin::query::cut_fill(support::terrain_of({{0, 0}}, support::plane), other, support::metre_ground(), {});
+  const auto refused =
+      tin::query::cut_fill(support::terrain_of({{0, 0}}, support::plane), other, support::metre_ground(), {});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, Code::kInvalidValue);
 }

@@ -14,8 +14,8 @@ using Cell = std::vector<At>;
 /// What of the cell is nearer to `own` than to `other`, both relative to the origin.
 Cell nearer(const Cell& cell, At own, At other) {
   const auto excess = [&](At q) {
-    return (q.x - other.x) * (q.x - other.x) + (q.y - other.y) * (q.y - other.y) - (q.x - own.x) * (q.x - own.x) -
-           (q.y - own.y) * (q.y - own.y);
+    return (q.x - other.x) * (q.x - other.x) + (q.y - other.y) * (q.y - other.y) -
+           (q.x - own.x) * (q.x - own.x) - (q.y - own.y) * (q.y - own.y);
   };
   Cell out;
   for (std::size_t i = 0; i < cell.size(); ++i) {
@@ -44,7 +44,8 @@ long double area(const Cell& cell) {
 std::vector<double> sibson_weights(const std::vector<tin::exact::Point>& points, tin::exact::Point p) {
   constexpr long double kFar = 1e7L;
   std::vector<At> at;
-  for (const auto q : points) at.push_back({static_cast<long double>(q.x) - p.x, static_cast<long double>(q.y) - p.y});
+  for (const auto q : points)
+    at.push_back({static_cast<long double>(q.x) - p.x, static_cast<long double>(q.y) - p.y});
   const Cell everything{{-kFar, -kFar}, {kFar, -kFar}, {kFar, kFar}, {-kFar, kFar}};
   Cell taken = everything;
   for (const At& q : at) taken = nearer(taken, {0, 0}, q);

@@ -7,7 +7,8 @@
 
 namespace support {
 
-/// weights[i] is what a cell at `p` would take from that of points[i], as a part of all that it takes. O(n^2).
+/// weights[i] is what a cell at `p` would take from that of points[i], as a part of all that it takes.
+/// O(n^2).
 std::vector<double> sibson_weights(const std::vector<tin::exact::Point>& points, tin::exact::Point p);
 
 }  // namespace support
