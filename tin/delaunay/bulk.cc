@@ -21,6 +21,7 @@ using mesh::VertexSlot;
 constexpr std::uint32_t kStride = 8;
 constexpr std::uint32_t kFirstStride = kStride * kStride;
 constexpr std::uint32_t kBetweenReports = 4096;
+constexpr std::uint32_t kAhead = 64;
 
 TriangleSlot first_slot(VertexSlot v) { return TriangleSlot(2 * v.value() - 2); }
 TriangleSlot second_slot(VertexSlot v) { return TriangleSlot(2 * v.value() - 1); }
@@ -47,8 +48,9 @@ class Builder {
   bool insert_all(unsigned threads);
   bool insert_in_territory(unsigned thread, unsigned threads, std::vector<VertexSlot>& left);
   template <class Owner>
-  bool insert(Cavity& cavity, VertexSlot v, VertexSlot& last, const Owner& owner);
+  bool insert(Cavity& cavity, VertexSlot v, VertexSlot next, TriangleSlot& start, const Owner& owner);
   bool pause(bool reports);
+  void fetch(std::uint32_t i, std::uint32_t end) const;
 
   bool is_in_first_triangle(VertexSlot v) const { return v == first_[0] || v == first_[1] || v == first_[2]; }
 
@@ -103,23 +105,29 @@ bool Builder::pause(bool reports) {
   return !progress_->cancelled();
 }
 
-/// Inserts `v`, walking from `last`, which `v` then becomes. False when the owner may not.
+/// Asks for what was made at the i-th vertex in an earlier round, or will be.
+void Builder::fetch(std::uint32_t i, std::uint32_t end) const {
+  if (i >= end) return;
+  mesh_.prefetch(VertexSlot(i));
+  mesh_.prefetch(first_slot(VertexSlot(i)));
+}
+
+/// Inserts `v`, walking from `start`, which then becomes a good place to walk to `next` from. False when the owner may not.
 template <class Owner>
-bool Builder::insert(Cavity& cavity, VertexSlot v, VertexSlot& last, const Owner& owner) {
-  const Point p = mesh_.point(v);
-  const Stop stop = walk(mesh_, p, finite_start(mesh_, mesh_.triangle_at(last)), owner);
+bool Builder::insert(Cavity& cavity, VertexSlot v, VertexSlot next, TriangleSlot& start, const Owner& owner) {
+  const Point p = mesh_.point(v), q = next.value() <= count() ? mesh_.point(next) : p;
+  const Stop stop = walk(mesh_, p, finite_start(mesh_, start), owner);
   if (stop.kind == Stop::Kind::kGaveUp || !cavity.carve(mesh_, p, stop, owner)) return false;
-  cavity.fill(mesh_, v, first_slot(v), second_slot(v));
-  last = v;
+  start = cavity.fill(mesh_, v, first_slot(v), second_slot(v), {std::int64_t{q.x} - p.x, std::int64_t{q.y} - p.y});
   return true;
 }
 
 bool Builder::insert_all(unsigned threads) {
   Cavity cavity;
-  VertexSlot last = first_[0];
+  TriangleSlot start = mesh_.triangle_at(first_[0]);
   for (std::uint32_t i = 1; i <= count(); i += kFirstStride) {
     if (is_in_first_triangle(VertexSlot(i))) continue;
-    insert(cavity, VertexSlot(i), last, Everywhere{});
+    insert(cavity, VertexSlot(i), VertexSlot(i + kFirstStride), start, Everywhere{});
     if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
   }
   speed_ = threads;
@@ -128,8 +136,9 @@ bool Builder::insert_all(unsigned threads) {
   on_threads(threads, [&](unsigned i) { done[i] = insert_in_territory(i, threads, left[i]) ? 1 : 0; });
   for (unsigned i = 0; i < threads; ++i) {
     if (done[i] == 0) return false;
+    start = mesh_.triangle_at(first_[0]);
     for (const VertexSlot v : left[i]) {
-      insert(cavity, v, last, Everywhere{});
+      insert(cavity, v, VertexSlot(v.value() + 1), start, Everywhere{});
       if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
     }
   }
@@ -143,17 +152,19 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
   };
   const Territory territory{begin(thread), begin(thread + 1)};
   Cavity cavity;
-  VertexSlot last{territory.begin};
+  TriangleSlot start = mesh_.triangle_at(VertexSlot(territory.begin));
   std::uint32_t done = 0;
   for (const std::uint32_t stride : {kStride, 1U}) {
     for (std::uint32_t i = territory.begin; i < territory.end; i += stride) {
+      fetch(i + kAhead * stride, territory.end);
       if ((i - 1) % (stride * kStride) == 0 || is_in_first_triangle(VertexSlot(i))) continue;
+      const VertexSlot v(i), next(i + stride);
       if (threads == 1) {
-        insert(cavity, VertexSlot(i), last, Everywhere{});
-      } else if (!insert(cavity, VertexSlot(i), last, territory)) {
+        insert(cavity, v, next, start, Everywhere{});
+      } else if (!insert(cavity, v, next, start, territory)) {
         // The territory need not be convex: the walk may have left it. Near on the curve is a vertex of the first round.
-        last = VertexSlot(i - (i - 1) % kFirstStride);
-        if (!insert(cavity, VertexSlot(i), last, territory)) left.emplace_back(i);
+        start = mesh_.triangle_at(VertexSlot(i - (i - 1) % kFirstStride));
+        if (!insert(cavity, v, next, start, territory)) left.emplace_back(i);
       }
       if (++done % kBetweenReports != 0) continue;
       if (thread == 0) inserted_ += kBetweenReports;
