@@ -28,11 +28,13 @@ TriangleSlot second_slot(VertexSlot v) { return TriangleSlot(2 * v.value() - 1);
 
 class Builder {
  public:
-  Builder(Mesh& mesh, base::Progress* progress) : mesh_(mesh), progress_(progress) {}
+  Builder(Mesh& mesh, base::Progress* progress, const std::function<void()>& meanwhile)
+      : mesh_(mesh), progress_(progress), meanwhile_(meanwhile) {}
 
   bool run(unsigned threads) {
     if (!make_first_triangle()) {
       make_line();
+      if (meanwhile_) meanwhile_();
       return true;
     }
     const bool done = insert_all(threads);
@@ -46,6 +48,8 @@ class Builder {
   bool make_first_triangle();
   void make_line();
   bool insert_all(unsigned threads);
+  bool insert_first_round();
+  bool insert_left(std::span<const VertexSlot> left);
   bool insert_in_territory(unsigned thread, unsigned threads, std::vector<VertexSlot>& left);
   template <class Owner>
   bool insert(Cavity& cavity, VertexSlot v, VertexSlot next, TriangleSlot& start, const Owner& owner);
@@ -56,6 +60,7 @@ class Builder {
 
   Mesh& mesh_;
   base::Progress* progress_;
+  const std::function<void()>& meanwhile_;
   std::array<VertexSlot, 3> first_{};
   std::uint32_t inserted_ = 0;  // as reported: by the first thread
   double speed_ = 1;            // what each insertion of the first thread stands for
@@ -123,6 +128,23 @@ bool Builder::insert(Cavity& cavity, VertexSlot v, VertexSlot next, TriangleSlot
 }
 
 bool Builder::insert_all(unsigned threads) {
+  bool goes_on = true;
+  on_threads(meanwhile_ ? std::min(threads, 2U) : 1, [&](unsigned i) {
+    if (i == 0) goes_on = insert_first_round();
+    if (meanwhile_ && i + 1 == std::min(threads, 2U)) meanwhile_();
+  });
+  if (!goes_on) return false;
+  speed_ = threads;
+  std::vector<std::vector<VertexSlot>> left(threads);
+  std::vector<char> done(threads);
+  on_threads(threads, [&](unsigned i) { done[i] = insert_in_territory(i, threads, left[i]) ? 1 : 0; });
+  for (unsigned i = 0; i < threads; ++i) {
+    if (done[i] == 0 || !insert_left(left[i])) return false;
+  }
+  return true;
+}
+
+bool Builder::insert_first_round() {
   Cavity cavity;
   TriangleSlot start = mesh_.triangle_at(first_[0]);
   for (std::uint32_t i = 1; i <= count(); i += kFirstStride) {
@@ -130,17 +152,16 @@ bool Builder::insert_all(unsigned threads) {
     insert(cavity, VertexSlot(i), VertexSlot(i + kFirstStride), start, Everywhere{});
     if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
   }
-  speed_ = threads;
-  std::vector<std::vector<VertexSlot>> left(threads);
-  std::vector<char> done(threads);
-  on_threads(threads, [&](unsigned i) { done[i] = insert_in_territory(i, threads, left[i]) ? 1 : 0; });
-  for (unsigned i = 0; i < threads; ++i) {
-    if (done[i] == 0) return false;
-    start = mesh_.triangle_at(first_[0]);
-    for (const VertexSlot v : left[i]) {
-      insert(cavity, v, VertexSlot(v.value() + 1), start, Everywhere{});
-      if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
-    }
+  return true;
+}
+
+/// Inserts what a thread has put off: near each other, along the border of its territory.
+bool Builder::insert_left(std::span<const VertexSlot> left) {
+  Cavity cavity;
+  TriangleSlot start = mesh_.triangle_at(first_[0]);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    insert(cavity, left[i], left[i + 1 == left.size() ? i : i + 1], start, Everywhere{});
+    if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
   }
   return true;
 }
@@ -176,6 +197,8 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
 
 }  // namespace
 
-bool build_bulk(Mesh& mesh, unsigned threads, base::Progress* progress) { return Builder(mesh, progress).run(threads); }
+bool build_bulk(Mesh& mesh, unsigned threads, base::Progress* progress, const std::function<void()>& meanwhile) {
+  return Builder(mesh, progress, meanwhile).run(threads);
+}
 
 }  // namespace tin::delaunay
