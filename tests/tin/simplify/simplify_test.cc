@@ -110,10 +110,10 @@ TEST_F(SimplifyTest, KeepsEverySampleOfHardRastersWithinTheTolerance) {
 }
 
 TEST_F(SimplifyTest, LocalSearchKeepsEverySampleWithinTheToleranceAndNeedsFewer) {
-  for (const auto& [name, raster] : support::hard_rasters(random_, 40)) {
+  for (const auto& [name, raster] : support::hard_rasters(random_, 30)) {
     SCOPED_TRACE(name);
     const Terrain source = support::raster_terrain(raster);
-    for (const double tolerance : {0.0, 1.0, 3.0, 20.0}) {
+    for (const double tolerance : {0.0, 1.0, 20.0}) {
       const std::size_t fast = expect_within(source, tolerance);
       const std::size_t balanced = expect_within(source, tolerance, Effort::kBalanced);
       const std::size_t thorough = expect_within(source, tolerance, Effort::kThorough);
@@ -251,10 +251,10 @@ TEST_F(SimplifyTest, ThreadsDoNotChangeTheResult) {
     return std::optional(std::round(200 * std::sin(c * 0.05) * std::cos(r * 0.03) + static_cast<double>(random_() % 9)));
   };
   // Several tiles, and several patches.
-  const Terrain source = support::raster_terrain(heights(700, 420, wave));
-  for (Options options : {to(2), to(3, Effort::kBalanced), at_most(9000, Effort::kBalanced)}) {
+  const Terrain source = support::raster_terrain(heights(460, 330, wave));
+  for (Options options : {to(2), to(3, Effort::kBalanced), at_most(4000, Effort::kBalanced)}) {
     const auto one = simplify(source, options, nullptr);
-    for (const unsigned threads : {2U, 5U}) {
+    for (const unsigned threads : {2U, 3U}) {
       options.threads = threads;
       const auto more = simplify(source, options, nullptr);
       EXPECT_EQ(one->removed, more->removed);
