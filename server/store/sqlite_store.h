@@ -17,7 +17,7 @@ struct SqliteOptions {
   /// no bound but the disk's.
   std::int64_t max_file_bytes = 0;
   /// What writes the files beside the database; null: the system. Tests put faults here.
-  std::shared_ptr<Disk> disk;
+  std::shared_ptr<Disk> disk = nullptr;
 };
 
 /// Opens or creates the store of `folder`: tinsmith.sqlite3 with SQLite's files beside it, the folder "files"
