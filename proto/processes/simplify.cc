@@ -24,6 +24,8 @@ constexpr std::string_view kInputs = R"({
 "schema":{"type":"string","pattern":"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$"}},
 "effort":{"title":"Effort","description":"How much time to spend on fewer vertices: balanced takes about three times as long as fast, thorough ten times, best fifty times or until maxSeconds.","minOccurs":0,"maxOccurs":1,
 "schema":{"type":"string","enum":["fast","balanced","thorough","best"],"default":"balanced"}},
+"protect":{"title":"What stays","description":"Vertices that stay whatever they are worth: one item or an array of them, each a vertex id, a GeoJSON Polygon or MultiPolygon in the TIN's CRS (the vertices inside it), or the word border (those on the outline).","minOccurs":0,"maxOccurs":1,
+"schema":{"oneOf":[{"type":"integer","minimum":1},{"type":"string","enum":["border"]},{"type":"object"},{"type":"array","items":{"oneOf":[{"type":"integer","minimum":1},{"type":"string","enum":["border"]},{"type":"object"}]}}]}},
 "maxSeconds":{"title":"Time budget","description":"Once so much time is spent, the best result so far is certified and returned; the tolerance holds in any case, so that a first result may take longer.","minOccurs":0,"maxOccurs":1,
 "schema":{"type":"number","minimum":0.001,"maximum":86400}},
 "seed":{"title":"Seed","description":"Chooses the way of the search. Without maxSeconds the same inputs give the same result.","minOccurs":0,"maxOccurs":1,
@@ -64,6 +66,87 @@ Result<void> read_goals(const Object& inputs, SimplifyInputs& request) {
   }
   if (!request.tolerance && !request.max_vertices) {
     return error(Code::kInvalidValue, "tolerance or maxVertices must be given", "/inputs");
+  }
+  return {};
+}
+
+constexpr std::size_t kMostProtected = 1'000'000;  // items, rings of a polygon, positions of a ring
+
+Result<SimplifyProtect::Ring> read_ring(const Value& value) {
+  const auto positions = value.array(kMostProtected);
+  if (!positions) return positions.error();
+  if (positions->size() < 3) return value.error(Code::kInvalidValue, "a ring has at least three positions");
+  SimplifyProtect::Ring ring;
+  for (const Value item : *positions) {
+    const auto numbers = item.array(3);
+    if (!numbers) return numbers.error();
+    std::vector<double> at;
+    for (const Value number : *numbers) {
+      const auto read = number.number();
+      if (!read) return read.error();
+      at.push_back(*read);
+    }
+    if (at.size() < 2) return item.error(Code::kMalformed, "here must be x and y");
+    ring.push_back({at[0], at[1]});
+  }
+  return ring;
+}
+
+Result<void> read_polygon(const Value& value, SimplifyProtect& protect) {
+  const auto rings = value.array(kMostProtected);
+  if (!rings) return rings.error();
+  SimplifyProtect::Polygon polygon;
+  for (const Value item : *rings) {
+    auto ring = read_ring(item);
+    if (!ring) return ring.error();
+    polygon.push_back(*std::move(ring));
+  }
+  if (polygon.empty()) return value.error(Code::kInvalidValue, "a polygon has at least one ring");
+  protect.polygons.push_back(std::move(polygon));
+  return {};
+}
+
+Result<void> read_geometry(const Value& value, SimplifyProtect& protect) {
+  const auto object = value.object({"type", "coordinates", "bbox"});
+  if (!object) return object.error();
+  const auto type = object->require("type");
+  if (!type) return type.error();
+  const auto name = type->string(kMaxWord);
+  if (!name) return name.error();
+  const auto coordinates = object->require("coordinates");
+  if (!coordinates) return coordinates.error();
+  if (*name == "Polygon") return read_polygon(*coordinates, protect);
+  if (*name != "MultiPolygon")
+    return type->error(Code::kInvalidValue, "what is protected is a Polygon or a MultiPolygon");
+  const auto polygons = coordinates->array(kMostProtected);
+  if (!polygons) return polygons.error();
+  for (const Value polygon : *polygons) {
+    if (auto fine = read_polygon(polygon, protect); !fine) return fine;
+  }
+  return {};
+}
+
+Result<void> read_protected(const Value& value, SimplifyProtect& protect) {
+  if (const auto id = value.integer(1, kMaxCount)) {
+    protect.ids.push_back({VertexId(static_cast<std::uint64_t>(*id)), value.pointer()});
+    return {};
+  }
+  if (value.any_object()) return read_geometry(value, protect);
+  const auto word = value.string(kMaxWord);
+  if (!word || *word != "border")
+    return value.error(Code::kInvalidValue, "what is protected is a vertex id, a GeoJSON polygon or \"border\"");
+  protect.border = true;
+  return {};
+}
+
+Result<void> read_protect(const Object& inputs, SimplifyProtect& protect) {
+  const auto member = inputs.find("protect");
+  if (!member) return {};
+  if (!member->is_array()) return read_protected(*member, protect);
+  const auto items = member->array(kMostProtected);
+  if (!items) return items.error();
+  for (const Value item : *items) {
+    if (auto fine = read_protected(item, protect); !fine) return fine;
   }
   return {};
 }
@@ -124,7 +207,7 @@ const ProcessDescription& simplify_description() {
 
 Result<SimplifyInputs> read_simplify_inputs(const Value& value) {
   const auto inputs =
-      value.object({"tin", "tolerance", "maxVertices", "as", "effort", "maxSeconds", "seed"});
+      value.object({"tin", "tolerance", "maxVertices", "as", "effort", "maxSeconds", "seed", "protect"});
   if (!inputs) return inputs.error();
   SimplifyInputs request;
   auto tin = read_tin_id(*inputs, "tin");
@@ -135,6 +218,7 @@ Result<SimplifyInputs> read_simplify_inputs(const Value& value) {
   request.as = std::move(*as);
   if (auto goals = read_goals(*inputs, request); !goals) return goals.error();
   if (auto means = read_means(*inputs, request); !means) return means.error();
+  if (auto protect = read_protect(*inputs, request.protect); !protect) return protect.error();
   return request;
 }
 

@@ -19,6 +19,19 @@ enum class SimplifyEffort { kFast, kBalanced, kThorough, kBest };
 /// "fast", "balanced", "thorough" or "best". Errors: kInvalidValue.
 tin::base::Result<SimplifyEffort> parse_effort(std::string_view text, std::string where);
 
+/// Which vertices stay.
+struct SimplifyProtect {
+  using Ring = std::vector<Position2>;  // closed or not
+  using Polygon = std::vector<Ring>;    // outer ring, holes
+  struct Id {
+    VertexId id;
+    std::string where;  // its pointer
+  };
+  bool border = false;  // those on the outline
+  std::vector<Id> ids;
+  std::vector<Polygon> polygons;  // in the TIN's CRS: those inside
+};
+
 /// At least one of tolerance and max_vertices is there.
 struct SimplifyInputs {
   std::string tin;
@@ -27,6 +40,7 @@ struct SimplifyInputs {
   SimplifyEffort effort = SimplifyEffort::kBalanced;
   std::optional<double> max_seconds;  // 0.001 to 86400
   std::uint64_t seed = 1;
+  SimplifyProtect protect;
   std::optional<std::string> as;  // id of the TIN to make; without it the TIN itself is simplified
 };
 tin::base::Result<SimplifyInputs> read_simplify_inputs(const Value& inputs);

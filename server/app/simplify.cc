@@ -64,6 +64,7 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
                                  std::chrono::duration<double>(*request.max_seconds));
     options.out_of_time = [end] { return Clock::now() >= end; };
   }
+  options.protect = protected_positions(*seen.terrain, request.protect);
   auto outcome = tin::simplify::simplify(*seen.terrain, *source ? &**source : nullptr,
                                          seen.terrain->amendments().own(), options, &progress);
   if (!outcome) return outcome.error();

@@ -5,16 +5,36 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/app/catalogue.h"
 #include "tin/simplify/simplify.h"
 
 namespace server::app {
 
+/// Vertices that stay, as asked for.
+struct Protection {
+  struct Corner {
+    double x = 0, y = 0;  // in the TIN's CRS
+  };
+  using Polygon = std::vector<std::vector<Corner>>;  // rings; a position in an odd number of them is inside
+  bool border = false;
+  std::vector<VertexId> ids;
+  std::vector<Polygon> polygons;
+
+  bool empty() const { return !border && ids.empty() && polygons.empty(); }
+};
+
+/// Where they stand. Ids that are not there do not count. Cost: the vertices times the polygons' corners near
+/// them.
+std::vector<tin::exact::Point> protected_positions(const tin::terrain::Terrain& terrain,
+                                                   const Protection& protection);
+
 struct SimplifyRequest {
   std::shared_ptr<Tin> tin;
   tin::simplify::Options options;
   std::optional<double> max_seconds;
+  Protection protect;
   std::optional<std::string> as;  // id of the TIN to make; nothing: the TIN itself gets a new revision
 };
 

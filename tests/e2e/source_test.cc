@@ -185,6 +185,37 @@ TEST_F(SourceTest, VerticesOfJsonAreASourceAndThoseOfEditsStaySamples) {
   }
 }
 
+TEST_F(SourceTest, WhatIsProtectedStays) {
+  const Dem dem(sample_file("olinda"));
+  ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);
+  const auto corner = [&](int column, int row) { return Json::array({dem.x(column) - 1, dem.y(row) + 1}); };
+  // A square of 10 x 10 pixels, two vertices by name, and all of the outline.
+  const Json square = {{"type", "Polygon"},
+                       {"coordinates", {{corner(20, 30), corner(30, 30), corner(30, 40), corner(20, 40)}}}};
+  const Json result = served_->simplify(
+      {{"tin", "dem"}, {"tolerance", 20}, {"effort", "fast"}, {"protect", {5000, "border", square, 7777}}});
+  expect_kept(dem, "dem", result, 20);
+  const Json vertices = served_->get("/tins/dem/export?f=geojson&collection=vertices&crs=EPSG:32725");
+  int inside = 0, border = 0, named = 0;
+  for (const Json& feature : vertices.at("features")) {
+    const Json& at = feature.at("geometry").at("coordinates");
+    const int column =
+        static_cast<int>(std::lround((at.at(0).get<double>() - dem.x(0)) / dem.geotransform[1]));
+    const int row = static_cast<int>(std::lround((at.at(1).get<double>() - dem.y(0)) / dem.geotransform[5]));
+    inside += column >= 20 && column < 30 && row >= 30 && row < 40;
+    border += column == 0 || row == 0 || column == dem.width - 1 || row == dem.height - 1;
+    named += feature.at("id") == 5000 || feature.at("id") == 7777;
+  }
+  EXPECT_EQ(inside, 100);
+  EXPECT_EQ(border, 2 * (dem.width + dem.height) - 4);
+  EXPECT_EQ(named, 2);
+  EXPECT_LT(vertices.at("features").size(), 1000U) << "the rest is thinned";
+  const RawAnswer unknown = served_->http().post_json(
+      "/processes/simplify/execution", R"({"inputs":{"tin":"dem","tolerance":1,"protect":[1,999999]}})");
+  EXPECT_EQ(unknown.status, 422);
+  EXPECT_NE(unknown.body.find("/inputs/protect/1"), std::string::npos) << unknown.body;
+}
+
 TEST_F(SourceTest, ATimeBudgetGivesACertifiedResult) {
   const Dem dem(sample_file("olinda"));
   ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);

@@ -1,5 +1,7 @@
 #include "server/app/simplify.h"
 
+#include <algorithm>
+
 #include "server/api/processes/simplify.h"
 #include "server/api/processes/process.h"
 
@@ -39,6 +41,29 @@ std::string results_json(const app::Simplified& done) {
   return proto::simplify_results_json(results);
 }
 
+/// Errors: kUnknownVertex, where the id stands.
+Result<app::Protection> protection_of(const app::Tin& tin, const proto::SimplifyProtect& asked) {
+  app::Protection protect;
+  protect.border = asked.border;
+  const auto unknown = tin.read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
+    return std::find_if(asked.ids.begin(), asked.ids.end(),
+                        [&](const auto& one) { return !terrain.vertex(one.id); });
+  });
+  if (unknown != asked.ids.end()) {
+    return tin::base::error(tin::base::Code::kUnknownVertex,
+                            "There is no vertex " + std::to_string(unknown->id.value()) + ".", unknown->where);
+  }
+  for (const auto& one : asked.ids) protect.ids.push_back(one.id);
+  for (const auto& polygon : asked.polygons) {
+    auto& rings = protect.polygons.emplace_back();
+    for (const auto& ring : polygon) {
+      auto& corners = rings.emplace_back();
+      for (const proto::Position2& at : ring) corners.push_back({at.x, at.y});
+    }
+  }
+  return protect;
+}
+
 Result<Execution> prepare(Context& context, const proto::Value& value) {
   const auto inputs = proto::read_simplify_inputs(value);
   if (!inputs) return inputs.error();
@@ -47,7 +72,9 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
   if (inputs->as) {
     if (auto room = check_new_tin(context, inputs->as); !room) return room.error();
   }
-  app::SimplifyRequest wanted{*tin, {}, inputs->max_seconds, inputs->as};
+  auto protect = protection_of(**tin, inputs->protect);
+  if (!protect) return protect.error();
+  app::SimplifyRequest wanted{*tin, {}, inputs->max_seconds, *std::move(protect), inputs->as};
   wanted.options.effort = effort_of(inputs->effort);
   wanted.options.seed = inputs->seed;
   wanted.options.threads = app::simplify_threads();

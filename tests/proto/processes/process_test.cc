@@ -90,6 +90,23 @@ TEST(SimplifyInputsTest, ReadsEveryInput) {
   EXPECT_EQ(small.effort, proto::SimplifyEffort::kBalanced);
 }
 
+TEST(SimplifyInputsTest, ReadsWhatStays) {
+  const auto one = read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"protect":"border"}})").value();
+  EXPECT_TRUE(one.protect.border);
+  const auto many =
+      read_simplify(
+          R"({"inputs":{"tin":"a","tolerance":1,"protect":[7,{"type":"Polygon","coordinates":[[[0,0],[4,0],[0,4,1]],)"
+          R"([[1,1],[2,1],[1,2]]]},{"type":"MultiPolygon","coordinates":[[[[9,9],[10,9],[9,10]]]]},8]}})")
+          .value();
+  EXPECT_FALSE(many.protect.border);
+  ASSERT_EQ(many.protect.ids.size(), 2U);
+  EXPECT_EQ(many.protect.ids[1].id.value(), 8U);
+  EXPECT_EQ(many.protect.ids[1].where, "/inputs/protect/3");
+  ASSERT_EQ(many.protect.polygons.size(), 2U);
+  EXPECT_EQ(many.protect.polygons[0].size(), 2U);
+  EXPECT_EQ(many.protect.polygons[0][0][2], (proto::Position2{0, 4}));
+}
+
 TEST(SimplifyInputsTest, ErrorsSayWhere) {
   expect_errors(
       {
@@ -105,6 +122,14 @@ TEST(SimplifyInputsTest, ErrorsSayWhere) {
           {R"({"inputs":{"tin":"a","tolerance":1,"effort":"most"}})", Code::kInvalidValue, "/inputs/effort"},
           {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":0}})", Code::kInvalidValue, "/inputs/maxSeconds"},
           {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":86401}})", Code::kInvalidValue, "/inputs/maxSeconds"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":"all"}})", Code::kInvalidValue, "/inputs/protect"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":[1,0]}})", Code::kInvalidValue, "/inputs/protect/1"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Point","coordinates":[1,2]}}})",
+           Code::kInvalidValue, "/inputs/protect/type"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Polygon","coordinates":[[[1,2],[3]]]}}})",
+           Code::kInvalidValue, "/inputs/protect/coordinates/0"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Polygon","coordinates":[[[1,2],[3],[4,5]]]}}})",
+           Code::kMalformed, "/inputs/protect/coordinates/0/1"},
           {R"({"inputs":{"tin":"a","tolerance":1,"seed":-1}})", Code::kInvalidValue, "/inputs/seed"},
           {R"({"inputs":{"tin":"a","tolerance":1,"seed":1.5}})", Code::kMalformed, "/inputs/seed"},
           {R"({"inputs":{"tin":"a","tolerance":1,"as":""}})", Code::kInvalidValue, "/inputs/as"},
