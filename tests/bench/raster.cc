@@ -30,7 +30,7 @@ struct Grid {
   Grid(const Terrain& terrain, std::size_t size) {
     const auto box = *terrain.bounds();
     const double longer = std::max(double(box.max.x) - box.min.x, double(box.max.y) - box.min.y);
-    step = static_cast<std::int32_t>(longer / static_cast<double>(size));
+    step = static_cast<std::int32_t>(longer / static_cast<double>(size)) / 2 * 2;  // its half is whole
     for (std::size_t i = 0; i < size; ++i) {
       const auto along = static_cast<std::int32_t>(i) * step + step / 2;
       centres.x.push_back(box.min.x + along);

@@ -33,14 +33,20 @@ Rasteriser::Ordinates::Ordinates(const std::vector<std::int32_t>& values) : valu
   doubles_.assign(values_.begin(), values_.end());
   if (values_.empty()) return;
   const double length = static_cast<double>(values_.back()) - values_.front();
-  if (length > 0) per_step_ = static_cast<double>(values_.size() - 1) / length;
+  low_ = values_.front();
+  last_ = static_cast<double>(values_.size() - 1);
+  if (length > 0) per_step_ = last_ / length;
+}
+
+std::size_t Rasteriser::Ordinates::near(double bound) const {
+  if (!(bound > low_)) return 0;
+  return static_cast<std::size_t>(std::min((bound - low_) * per_step_, last_));
 }
 
 std::size_t Rasteriser::Ordinates::first_from(double bound) const {
-  if (values_.empty() || bound <= doubles_.front()) return 0;
+  if (values_.empty() || bound <= low_) return 0;
   if (bound > doubles_.back()) return values_.size();
-  auto i = static_cast<std::size_t>((bound - doubles_.front()) * per_step_);
-  i = std::min(i, values_.size() - 1);
+  std::size_t i = near(bound);
   while (i > 0 && doubles_[i - 1] >= bound) --i;
   while (doubles_[i] < bound) ++i;
   return i;
@@ -55,6 +61,10 @@ struct Rasteriser::Scan {
         at{facet.a(), facet.b(), facet.c()} {
     low = std::min({at[0].y, at[1].y, at[2].y});
     high = std::max({at[0].y, at[1].y, at[2].y});
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point u = at[i], v = at[(i + 1) % 3];
+      if (u.y != v.y) lean[i] = (static_cast<double>(v.x) - u.x) / (static_cast<double>(v.y) - u.y);
+    }
   }
   /// Whether pixels on the edge that starts at corner i belong to this triangle.
   bool owns(const mesh::Mesh& mesh, std::size_t i) {
@@ -70,6 +80,7 @@ struct Rasteriser::Scan {
   Facet facet;
   std::array<Point, 3> at;
   std::int32_t low, high;
+  std::array<double, 3> lean{};  // of edge i: abscissa per ordinate, for estimates
   std::array<int, 3> known{};
   bool may_be_void = false;
   double dz_dx = 0, dz_dy = 0;  // for gradients
@@ -212,8 +223,7 @@ void Rasteriser::cut(Scan& scan, std::size_t i, std::int32_t y, std::size_t& fir
   if (dy > 0 ? (up < 0 || up > dy) : (up > 0 || up < dy)) return;
   const std::int64_t across = dx * up;
   const auto side = [&](std::size_t c) { return across - dy * (std::int64_t{x_[c]} - u.x); };
-  const double bound = u.x + static_cast<double>(across) / static_cast<double>(dy);
-  std::size_t c = x_.first_from(bound);
+  std::size_t c = x_.near(u.x + scan.lean[i] * static_cast<double>(up));
   if (dy < 0) {  // the edge is on the left
     while (c > 0 && side(c - 1) >= 0) --c;
     while (c < x_.size() && side(c) < 0) ++c;

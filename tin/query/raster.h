@@ -64,13 +64,15 @@ class Rasteriser {
     bool reversed() const { return reversed_; }
     /// The first that is not below `bound`; size() when all are.
     std::size_t first_from(double bound) const;
+    /// About where first_from() is, within the array unless that is empty.
+    std::size_t near(double bound) const;
     const double* doubles() const { return doubles_.data(); }
 
    private:
     std::vector<std::int32_t> values_;
     std::vector<double> doubles_;
     bool reversed_ = false;
-    double per_step_ = 0;
+    double low_ = 0, last_ = 0, per_step_ = 0;
   };
   struct Scan;
 

@@ -96,7 +96,8 @@ TEST(GdalContourTest, CrossesTheRastersRowsAndColumnsWhereOursDo) {
       if (p.x < 0 || p.x > 10 * (kSize - 1) || p.y > 0 || p.y < -10 * (kSize - 1)) continue;
       double least = 1e300;
       for (const ContourLine& line : ours[level]) least = std::min(least, distance_to(line, p));
-      EXPECT_LT(least, 1e-5) << level << " at " << p.x << ' ' << p.y;
+      // GDAL keeps the heights of an ASCII grid in single precision.
+      EXPECT_LT(least, 5e-4) << level << " at " << p.x << ' ' << p.y;
       ++places;
     }
   }
