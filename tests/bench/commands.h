@@ -10,5 +10,6 @@ namespace bench {
 /// std::runtime_error.
 int run_paper(std::span<const std::string> arguments);
 int run_star(std::span<const std::string> arguments);
+int run_simplify(std::span<const std::string> arguments);
 
 }  // namespace bench
