@@ -16,15 +16,33 @@ namespace {
 
 constexpr std::size_t kSamplesPerTile = std::size_t{1} << 16;
 
-/// The samples of each tile alone, from the corners of their hull on.
-bool start_in_tiles(const Samples& samples, const Tiling& tiling, double tolerance, unsigned threads, const Phase& phase,
-                    std::vector<Pin>& pins) {
+/// Each sample once, fixed if it is in any place.
+void unite(std::vector<Pin>& pins) {
+  std::sort(pins.begin(), pins.end(), [](const Pin& a, const Pin& b) {
+    return a.sample != b.sample ? a.sample < b.sample : a.fixed && !b.fixed;
+  });
+  const auto same = [](const Pin& a, const Pin& b) { return a.sample == b.sample; };
+  pins.erase(std::unique(pins.begin(), pins.end(), same), pins.end());
+}
+
+bool holds(const terrain::Box& box, exact::Point p) {
+  return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y;
+}
+
+/// The samples of each tile alone, from the corners of their hull and from those in it on that never go.
+bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<const SampleIndex> fixed, double tolerance,
+                    unsigned threads, const Phase& phase, std::vector<Pin>& pins) {
   std::vector<std::vector<Pin>> found(tiling.size());
   const bool finished = for_each_tile(tiling.size(), threads, phase, [&](std::size_t tile) {
     std::vector<Pin> corners;
     for (const SampleIndex corner : hull_corners(samples, tiling.box(tile))) {
       corners.push_back({samples.site(corner).z, corner, true});
     }
+    const terrain::Box box = tiling.box(tile);
+    for (const SampleIndex sample : fixed) {
+      if (holds(box, samples.position(sample))) corners.push_back({samples.site(sample).z, sample, true});
+    }
+    unite(corners);
     Patch patch(samples, {}, corners);
     if (patch.mesh().dimension() == 2) {
       Greedy(patch, tolerance).run(Greedy::kNoBudget, phase.silent());
@@ -35,15 +53,6 @@ bool start_in_tiles(const Samples& samples, const Tiling& tiling, double toleran
   });
   for (const auto& part : found) pins.insert(pins.end(), part.begin(), part.end());
   return finished;
-}
-
-/// Each sample once, fixed if it is in any place.
-void unite(std::vector<Pin>& pins) {
-  std::sort(pins.begin(), pins.end(), [](const Pin& a, const Pin& b) {
-    return a.sample != b.sample ? a.sample < b.sample : a.fixed && !b.fixed;
-  });
-  const auto same = [](const Pin& a, const Pin& b) { return a.sample == b.sample; };
-  pins.erase(std::unique(pins.begin(), pins.end(), same), pins.end());
 }
 
 /// Which triangles are known from a tile's own TIN. A triangle with all corners inside one tile is empty of its vertices, so it
@@ -94,7 +103,7 @@ std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const S
   const Tiling tiling = Tiling::of_about(extent, extent.samples / kSamplesPerTile);
   std::vector<Pin> pins;
   for (const SampleIndex corner : corners) pins.push_back({samples.site(corner).z, corner, true});
-  if (!start_in_tiles(samples, tiling, tolerance, threads, phase.part(0, 0.8), pins)) return nullptr;
+  if (!start_in_tiles(samples, tiling, corners, tolerance, threads, phase.part(0, 0.8), pins)) return nullptr;
   unite(pins);
   auto tin = std::make_unique<Patch>(samples, std::span<const Pin>(), pins, threads);
   std::vector<Pin>().swap(pins);

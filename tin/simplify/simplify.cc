@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string>
@@ -63,6 +64,20 @@ std::optional<Worst> worst_of(const Samples& samples, const SourceSamples* sourc
   return out;
 }
 
+/// What never goes: the corners of the hull, and what the options protect.
+std::vector<SampleIndex> with_protected(const Samples& samples, std::vector<SampleIndex> corners, const Options& options) {
+  std::vector<SampleIndex> more;
+  for (const exact::Point p : options.protect) {
+    if (const auto sample = samples.find(p)) more.push_back(*sample);
+  }
+  std::sort(more.begin(), more.end());
+  more.erase(std::unique(more.begin(), more.end()), more.end());
+  std::vector<SampleIndex> hull = corners;
+  std::sort(hull.begin(), hull.end());
+  std::set_difference(more.begin(), more.end(), hull.begin(), hull.end(), std::back_inserter(corners));
+  return corners;
+}
+
 Result<Choice> choose(const Samples& samples, const SourceSamples* source, const Options& options, const Phase& whole) {
   const auto corners = hull_corners(samples, samples.extent().box);
   if (corners.size() < 3) {  // all in a line, or nearly none
@@ -72,8 +87,9 @@ Result<Choice> choose(const Samples& samples, const SourceSamples* source, const
     out.report.histogram[0] = out.report.samples;
     return out;
   }
-  if (auto fine = check_budget(options, corners.size()); !fine) return fine.error();
-  auto reduced = reduce(samples, corners, options, whole.part(0, 0.9));
+  const auto fixed = with_protected(samples, corners, options);
+  if (auto fine = check_budget(options, fixed.size()); !fine) return fine.error();
+  auto reduced = reduce(samples, fixed, options, whole.part(0, 0.9));
   if (!reduced) return error(Code::kCancelled, "Cancelled.");
   const double asked = options.tolerance.value_or(std::numeric_limits<double>::max());
   const double bin = (reduced->to_tolerance ? asked : reduced->error) / kBins;

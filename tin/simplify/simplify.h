@@ -41,6 +41,8 @@ struct Options {
   /// Asked now and then, by several threads at once: once it says true, the best state so far is certified and
   /// returned. (The engine knows no clock.) While the first certified state is not reached yet, work goes on.
   std::function<bool()> out_of_time;
+  /// Where samples stay vertices, whatever they are worth; a position without a sample does not count.
+  std::vector<exact::Point> protect;
   /// Local search follows it; the result depends on it, but not on the threads.
   std::uint64_t seed = 1;
   unsigned threads = 1;
@@ -96,7 +98,7 @@ struct Outcome {
 ///
 /// Units:    vertical ones of terrain.frame(); positions on its lattice.
 /// Errors:   kInvalidValue (no option, tolerance negative or not finite, max_vertices below what the hull
-///           needs: the message says how many), kCancelled.
+///           and what is protected need: the message says how many), kCancelled.
 /// Ensures:  the same samples, options and seed give the same result for any number of threads, whatever the
 ///           terrain's history; unless out_of_time said true (rmse up to rounding).
 /// Cost:     O(n log n) expected, times what the effort says.
