@@ -99,6 +99,15 @@ SourceSamples SourceSamples::points(std::vector<Placement> points) {
   return out;
 }
 
+SourceSamples SourceSamples::restored_points(std::vector<Point> positions, Heights heights) {
+  TIN_CHECK(positions.size() == heights.size());
+  SourceSamples out;
+  out.points_ = std::make_shared<const std::vector<Point>>(std::move(positions));
+  out.heights_ = std::make_shared<const Heights>(std::move(heights));
+  out.count();
+  return out;
+}
+
 /// Counts the samples; where all are valid, no bits are kept.
 void SourceSamples::count() {
   count_ = size();

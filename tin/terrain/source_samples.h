@@ -41,11 +41,17 @@ class SourceSamples {
   /// From what raster(), valid() and heights() gave: a stored one. Requires: sizes that fit.
   static SourceSamples restored_raster(std::shared_ptr<const SourceGrid> grid, Heights heights,
                                        std::vector<std::uint64_t> valid);
+  /// The same for points. Requires: positions ascend; one height each.
+  static SourceSamples restored_points(std::vector<exact::Point> positions, Heights heights);
 
   bool is_raster() const { return grid_ != nullptr; }
   /// Null unless a raster.
   const std::shared_ptr<const SourceGrid>& grid() const { return grid_; }
   const Heights& heights() const { return *heights_; }
+  /// Of points, ascending; none in a raster.
+  std::span<const exact::Point> positions() const {
+    return points_ ? std::span<const exact::Point>(*points_) : std::span<const exact::Point>();
+  }
   /// One bit per index, 1 = a sample; empty when all are.
   std::span<const std::uint64_t> valid() const { return valid_; }
 

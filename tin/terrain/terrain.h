@@ -16,6 +16,7 @@
 #include "tin/base/result.h"
 #include "tin/delaunay/triangulation.h"
 #include "tin/frame/frame.h"
+#include "tin/terrain/amendments.h"
 #include "tin/terrain/digest.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/id_map.h"
@@ -53,15 +54,18 @@ class Terrain {
   /// first keeps its id). Requires: positions on the lattice.
   /// Errors: kNotFinite, kInvalidValue (elevation beyond kMaxElevation), kOutsideLattice, kDuplicatePosition
   /// (policy kReject), kCancelled; `where` is "/i".
+  /// Threads: uses up to `threads`; the terrain is the same for any number.
   static base::Result<Terrain> build(frame::Frame frame, std::span<const Placement> placements,
-                                     Duplicates duplicates, base::Progress* progress = nullptr);
+                                     Duplicates duplicates, base::Progress* progress = nullptr,
+                                     unsigned threads = 1);
   /// The same with given ids (a checkpoint's): ids must be distinct and positions too, else kMalformed.
   static base::Result<Terrain> restore(frame::Frame frame, std::span<const Vertex> vertices,
-                                       VertexId next_id);
+                                       VertexId next_id, unsigned threads = 1);
 
   /// Applies all edits or none, in order; a later edit may name a vertex that an earlier one inserted.
   /// Errors: kUnknownVertex, kDuplicatePosition, kNotFinite, kInvalidValue, kOutsideLattice; `where` is "/i"
-  /// (the edit's index). Ensures: on error the terrain is as it was. Cost: expected O(log n) per edit.
+  /// (the edit's index). Ensures: on error the terrain is as it was. Cost: expected O(log n) per edit; where
+  /// removals have left more gaps than vertices the arrays are made compact, O(n), less than the removals cost.
   base::Result<Applied> apply(std::span<const Edit> edits, Duplicates duplicates);
 
   /// Takes back the last apply() as if it had never been: ids that it gave are given again. Requires: nothing
@@ -90,7 +94,9 @@ class Terrain {
   std::vector<Vertex> vertices_by_id(std::span<const VertexId> without = {}) const;
   /// What is left when the vertices of these ids (ascending) are removed, built anew: the same terrain as by
   /// removing them one by one, sooner when they are many.
-  Terrain without(std::span<const VertexId> ids) const;
+  Terrain without(std::span<const VertexId> ids, unsigned threads = 1) const { return replaced(ids, {}, threads); }
+  /// The same with other vertices in their stead, whose ids, from next_id() on, ascend. Requires: no two at one position.
+  Terrain replaced(std::span<const VertexId> removed, std::span<const Vertex> added, unsigned threads = 1) const;
 
   std::string digest() const { return hash_.digest(frame_); }
   /// O(n) each; empty terrain: nothing.
@@ -101,6 +107,12 @@ class Terrain {
   const SourceGrid* source_grid() const { return source_grid_.get(); }
   std::shared_ptr<const SourceGrid> shared_source_grid() const { return source_grid_; }
 
+  /// What became of the samples that the terrain was made of.
+  const Amendments& amendments() const { return amendments_; }
+  void set_amendments(Amendments amendments) { amendments_ = std::move(amendments); }
+  /// Has the samples follow a change that was applied or replayed, once it is certain to stay. Requires: it was the last.
+  void amend(const Change& change) { amendments_.take(*this, change); }
+
  private:
   base::Result<VertexId> apply_one(const Insert& edit, Duplicates duplicates, Change& change);
   base::Result<VertexId> apply_one(const Remove& edit, Duplicates duplicates, Change& change);
@@ -109,6 +121,7 @@ class Terrain {
   bool take(const Step& step);  // performs one step if it fits
   void put(mesh::VertexSlot slot, VertexId id, const Placement& placement);
   void drop(mesh::VertexSlot slot, VertexId id);
+  void close_gaps();
 
   frame::Frame frame_;
   delaunay::Triangulation triangulation_;
@@ -117,6 +130,7 @@ class Terrain {
   VertexId next_id_{1};
   VertexSetHash hash_;
   std::shared_ptr<const SourceGrid> source_grid_;
+  Amendments amendments_;
 };
 
 }  // namespace tin::terrain
