@@ -32,7 +32,7 @@ int rounds_of(Effort effort) {
     case Effort::kBalanced:
       return 2;
     case Effort::kThorough:
-      return 12;
+      return 14;
     case Effort::kBest:
       return 80;
   }
