@@ -18,6 +18,8 @@ using mesh::VertexSlot;
 
 namespace {
 
+constexpr std::size_t kLarge = 64;  // a star worth to be stored in the order of its link, for those who will walk around it
+
 /// Whether the new point, at the origin and in line with the hull edge from q to r, lies on it.
 template <class Seen>
 bool on_hull_edge(const Seen& q, const Seen& r) {
@@ -129,6 +131,7 @@ template bool Cavity::carve(const Mesh&, Point, const Stop&, const OwnedFrom&);
 TriangleSlot Cavity::fill(Mesh& mesh, VertexSlot v, TriangleSlot extra1, TriangleSlot extra2, Direction toward) {
   triangles_[triangle_count_++] = extra1;
   triangles_[triangle_count_++] = extra2;
+  if (triangle_count_ > kLarge) std::sort(triangles_.begin(), triangles_.begin() + static_cast<std::ptrdiff_t>(triangle_count_));
   const auto side = [&](std::uint32_t corner) { return corners_[corner].x * toward.y - corners_[corner].y * toward.x; };
   std::uint32_t at = 0;
   VertexSlot from = corners_[0].vertex;

@@ -177,10 +177,8 @@ inline bool Mesh::is_infinite(TriangleSlot t) const {
 
 inline int Mesh::index_of(TriangleSlot t, VertexSlot v) const {
   const auto& vertices = triangle(t).vertices;
-  if (vertices[0] == v) return 0;
-  if (vertices[1] == v) return 1;
-  TIN_DCHECK(vertices[2] == v);
-  return 2;
+  TIN_DCHECK(vertices[0] == v || vertices[1] == v || vertices[2] == v);
+  return static_cast<int>(vertices[1] == v) + 2 * static_cast<int>(vertices[2] == v);  // as next3(): no branches
 }
 
 inline void Mesh::set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, VertexSlot c) {

@@ -12,7 +12,10 @@ std::span<const Ear> Chew::fill(const Star& star, Tally& tally) {
   draw_order(k);
   find_neighbours(k);
   polygon_.start(k, order_[0], order_[1], order_[2]);
-  for (std::uint32_t i = 3; i < k; ++i) polygon_.insert(star, before_[order_[i]], order_[i], tally);
+  for (std::uint32_t i = 3; i < k; ++i) {
+    if (i + kAhead < k) polygon_.prefetch(star, before_[order_[i + kAhead]], order_[i + kAhead]);
+    polygon_.insert(star, before_[order_[i]], order_[i], tally);
+  }
   ears_.clear();
   polygon_.append_ears(ears_);
   return ears_;

@@ -19,6 +19,7 @@ class Chew {
   std::span<const Ear> fill(const Star& star, Tally& tally);
 
  private:
+  static constexpr std::uint32_t kAhead = 8;  // insertions
   static constexpr std::uint64_t kSeed = 0x9e3779b97f4a7c15ULL;
 
   void draw_order(std::uint32_t degree);

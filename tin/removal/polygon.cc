@@ -4,14 +4,18 @@
 
 namespace tin::removal {
 
+using exact::Int128;
+
 void Polygon::start(std::uint32_t degree, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  triangles_.clear();
-  triangles_.reserve(degree - 2);
-  triangles_.push_back({{a, b, c}, {kNowhere, kNowhere, kNowhere}});
-  edges_.resize(degree);
-  edges_[b] = 0;
-  edges_[c] = 1;
-  edges_[a] = 2;
+  if (triangles_.size() < degree) {
+    triangles_.resize(degree);
+    edges_.resize(degree);
+  }
+  first_ = a;
+  triangles_[a] = {{a, b, c}, {kNowhere, kNowhere, kNowhere}};
+  edges_[b] = a << 2;
+  edges_[c] = (a << 2) + 1;
+  edges_[a] = (a << 2) + 2;
 }
 
 void Polygon::link(Side a, Side b) {
@@ -19,44 +23,84 @@ void Polygon::link(Side a, Side b) {
   triangles_[b >> 2].twins[b & 3] = a;
 }
 
-/// Collects the triangles in conflict with `m`, depth first and counter-clockwise, so that the rim comes in order.
-template <class Tally>
-void Polygon::find_cavity(const Star& star, std::uint32_t before, std::uint32_t m, Tally& tally) {
-  cavity_.clear();
-  rim_.clear();
-  const Side entrance = edges_[before];
-  to_cross_.assign(1, {to(entrance), before, entrance});
-  while (!to_cross_.empty()) {
-    const Rim edge = to_cross_.back();
-    to_cross_.pop_back();
-    if (edge.beyond == kNowhere) {
-      rim_.push_back(edge);
-      continue;
-    }
-    const Triangle& t = triangles_[edge.beyond >> 2];
-    const auto& [a, b, c] = t.corners;
-    if (!star.in_conflict(a, b, c, m, tally)) {
-      rim_.push_back(edge);
-      continue;
-    }
-    const std::uint32_t j = edge.beyond & 3;
-    cavity_.push_back(edge.beyond >> 2);
-    to_cross_.push_back({t.corners[j], edge.to, t.twins[kPrevious[j]]});
-    to_cross_.push_back({edge.from, t.corners[j], t.twins[kNext[j]]});
+void Polygon::enlarge() {
+  room_ = room_ == 0 ? 64 : 2 * room_;
+  cavity_.resize(room_ + 1);
+  corners_.resize(room_ + 2);
+  rim_.resize(room_ + 2);
+  to_cross_.resize(2 * room_ + 1);
+}
+
+/// Field by field: a copy of the whole would be read from where its parts are still being written.
+inline void Polygon::see(const Star& star, std::uint32_t position, std::uint32_t m, Corner& corner) {
+  corner.position = position;
+  if (position == star.infinite()) [[unlikely]] {
+    corner.x = corner.y = 0;
+    corner.z = 1;
+    return;
   }
+  const exact::Lifted &at = star.at(position), &origin = star.at(m);
+  corner.x = at.x - origin.x;
+  corner.y = at.y - origin.y;
+  corner.z = at.z - origin.z;
+}
+
+/// Collects the triangles in conflict with `m`, breadth first, and returns their number. Nothing branches on what a test finds:
+/// a triangle's two other edges are always written, and count if it is in conflict. The edges that stay are the last ones
+/// written for each corner.
+template <class Tally>
+std::size_t Polygon::find_cavity(const Star& star, std::uint32_t before, std::uint32_t m, Tally& tally) {
+  if (room_ == 0) enlarge();
+  const bool finite = m != star.infinite();
+  const Side entrance = edges_[before];
+  const std::uint32_t after = to(entrance);
+  see(star, after, m, corners_[0]);
+  see(star, before, m, corners_[1]);
+  to_cross_[0] = {corners_[0].x * corners_[1].y - corners_[0].y * corners_[1].x, entrance, 0, 1};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 2 * count + 1; ++i) {
+    const std::int64_t cross = to_cross_[i].cross;
+    const Side beyond = to_cross_[i].beyond;
+    const std::uint32_t from_corner = to_cross_[i].from, to_corner = to_cross_[i].to;
+    rim_[from_corner].beyond = beyond;
+    rim_[from_corner].to = to_corner;
+    if (beyond == kNowhere) continue;
+    if (count == room_) [[unlikely]] enlarge();
+    const Triangle& t = triangles_[beyond >> 2];
+    const std::uint32_t j = beyond & 3;
+    const auto middle = static_cast<std::uint32_t>(count + 2);
+    Corner& apex = corners_[middle];
+    see(star, t.corners[j], m, apex);
+    const Corner &start = corners_[from_corner], &end = corners_[to_corner];
+    const std::int64_t from_apex = start.x * apex.y - start.y * apex.x, apex_to = apex.x * end.y - apex.y * end.x;
+    cavity_[count] = beyond >> 2;
+    to_cross_[2 * count + 1] = {from_apex, t.twins[kNext[j]], from_corner, middle};
+    to_cross_[2 * count + 2] = {apex_to, t.twins[kPrevious[j]], middle, to_corner};
+    const Int128 determinant = Int128{end.z} * from_apex + Int128{start.z} * apex_to - Int128{apex.z} * cross;
+    bool conflict = determinant > 0;
+    if (determinant == 0 || !finite) [[unlikely]] {
+      NoCounters none;
+      conflict = star.in_conflict(apex.position, end.position, start.position, m, none);
+    }
+    tally.in_circle_test();
+    count += conflict ? 1 : 0;
+  }
+  return count;
 }
 
 template <class Tally>
 void Polygon::insert(const Star& star, std::uint32_t before, std::uint32_t m, Tally& tally) {
-  find_cavity(star, before, m, tally);
-  cavity_.push_back(static_cast<std::uint32_t>(triangles_.size()));  // one triangle more than make way
-  triangles_.emplace_back();
+  const std::size_t count = find_cavity(star, before, m, tally);
+  cavity_[count] = m;  // one triangle more than make way
   Side open = kNowhere;  // the last triangle's side towards the next one
-  for (std::size_t i = 0; i < rim_.size(); ++i) {
+  std::uint32_t at = 0;
+  for (std::size_t i = 0; i <= count; ++i) {
     const Side side = cavity_[i] << 2;
-    const Rim& edge = rim_[i];
-    triangles_[cavity_[i]] = {{m, edge.from, edge.to}, {kNowhere, kNowhere, kNowhere}};
-    if (edge.beyond == kNowhere) edges_[edge.from] = side; else link(side, edge.beyond);
+    const std::uint32_t start = corners_[at].position;
+    const Side beyond = rim_[at].beyond;
+    at = rim_[at].to;
+    triangles_[cavity_[i]] = {{m, start, corners_[at].position}, {kNowhere, kNowhere, kNowhere}};
+    if (beyond == kNowhere) edges_[start] = side; else link(side, beyond);
     if (i == 0) edges_[m] = side + 2; else link(open, side + 2);
     open = side + 1;
   }
@@ -66,15 +110,15 @@ void Polygon::insert(const Star& star, std::uint32_t before, std::uint32_t m, Ta
 /// Goes down the dual tree from some edge of the polygon; a triangle is an ear once those behind it are cut.
 void Polygon::append_ears(std::vector<Ear>& ears) {
   const std::size_t first = ears.size();
-  cavity_.assign(1, edges_[triangles_[0].corners[0]]);
-  while (!cavity_.empty()) {
-    const Side side = cavity_.back();
-    cavity_.pop_back();
+  stack_.assign(1, edges_[triangles_[first_].corners[0]]);
+  while (!stack_.empty()) {
+    const Side side = stack_.back();
+    stack_.pop_back();
     const Triangle& t = triangles_[side >> 2];
     const std::uint32_t j = side & 3;
     ears.push_back({to(side), t.corners[j], from(side)});
-    if (t.twins[kNext[j]] != kNowhere) cavity_.push_back(t.twins[kNext[j]]);
-    if (t.twins[kPrevious[j]] != kNowhere) cavity_.push_back(t.twins[kPrevious[j]]);
+    if (t.twins[kNext[j]] != kNowhere) stack_.push_back(t.twins[kNext[j]]);
+    if (t.twins[kPrevious[j]] != kNowhere) stack_.push_back(t.twins[kPrevious[j]]);
   }
   std::reverse(ears.begin() + static_cast<std::ptrdiff_t>(first), ears.end());
 }

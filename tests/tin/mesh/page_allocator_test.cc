@@ -40,10 +40,10 @@ Block make(std::size_t size, unsigned char mark) {
 TEST(PageAllocatorTest, BlocksNeverOverlapThroughAnyHistory) {
   support::Random random(support::seed());
   testing::ScopedTrace trace(__FILE__, __LINE__, "TINSMITH_SEED=" + std::to_string(support::seed()));
-  std::uniform_int_distribution<std::size_t> any_size(1, 24 * kMiB);
+  std::uniform_int_distribution<std::size_t> any_size(1, 10 * kMiB);
   std::vector<Block> blocks;
-  for (int step = 0; step < 300; ++step) {
-    if (blocks.size() < 12 && random() % 2 == 0) {
+  for (int step = 0; step < 120; ++step) {
+    if (blocks.size() < 10 && random() % 2 == 0) {
       blocks.push_back(make(any_size(random), static_cast<unsigned char>(step)));
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(blocks.back().begin) % 64, 0U);
     } else if (!blocks.empty()) {
