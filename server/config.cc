@@ -47,6 +47,13 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/page_size_max", {&limits.page_size_max, 1, kMillion}}};
 }
 
+Numbers numbers_of(DecoderConfig& decoder) {
+  return {{"/decoder/memory_bytes", {&decoder.memory_bytes, kGiB, 1024 * kGiB}},
+          {"/decoder/file_bytes", {&decoder.file_bytes, 0, 1024 * kGiB}},
+          {"/decoder/cpu_seconds", {&decoder.cpu_seconds, 1, kMillion}},
+          {"/decoder/seconds", {&decoder.seconds, 1, kMillion}}};
+}
+
 Numbers numbers_of(JobConfig& jobs) {
   return {{"/jobs/workers", {&jobs.workers, 1, 256}},
           {"/jobs/queued", {&jobs.queued, 1, 100'000}},
@@ -139,6 +146,7 @@ Result<void> set_key(Config& config, const std::string& key, const json& value) 
   if (key == "data_dir") return set_data_dir(config, value);
   if (key == "log_level") return set_log_level(config, value);
   if (key == "limits") return set_section(numbers_of(config.limits), value, "/limits");
+  if (key == "decoder") return set_section(numbers_of(config.decoder), value, "/decoder");
   if (key == "jobs") return set_section(numbers_of(config.jobs), value, "/jobs");
   if (key == "http") return set_section(numbers_of(config.http), value, "/http");
   return tin::base::error(Code::kUnknownParameter, "there is no such key", token(key));

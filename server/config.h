@@ -38,6 +38,15 @@ struct LimitConfig {
   friend bool operator==(const LimitConfig&, const LimitConfig&) = default;
 };
 
+/// What the process that reads an uploaded file may use up.
+struct DecoderConfig {
+  std::int64_t memory_bytes = std::int64_t{4} << 30;  // of address space, some 170 MB of libraries included
+  std::int64_t file_bytes = 256 << 20;                // of a temporary file
+  std::int64_t cpu_seconds = 300;
+  std::int64_t seconds = 600;  // in all
+  friend bool operator==(const DecoderConfig&, const DecoderConfig&) = default;
+};
+
 struct JobConfig {
   std::int64_t workers = 1;
   std::int64_t queued = 16;
@@ -71,6 +80,7 @@ struct Config {
   std::filesystem::path data_dir = "data";
   std::string log_level = "info";  // debug, info, warning, error or off
   LimitConfig limits;
+  DecoderConfig decoder;
   JobConfig jobs;
   HttpConfig http;
   friend bool operator==(const Config&, const Config&) = default;

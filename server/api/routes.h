@@ -4,6 +4,7 @@
 #include "server/api/slots.h"
 #include "server/app/catalogue.h"
 #include "server/config.h"
+#include "server/gdal/decoder.h"
 #include "server/http/router.h"
 #include "server/jobs/job_queue.h"
 
@@ -22,6 +23,7 @@ struct Context {
   app::Catalogue& catalogue;
   jobs::JobQueue& jobs;
   const Config& config;
+  gdal::Decoder decoder;  // reads uploads; in this process unless it is told which program to run
   Slots uploads;  // files being read beside the jobs
   Slots exports;  // rasters being made
   Slots waiting;  // requests that wait for their job

@@ -8,7 +8,7 @@ Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesys
                                         const ImportRequest& request, tin::base::Progress& progress) {
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
   progress.begin_phase(0, 0.3);
-  auto import = gdal::import_file(file, request.options, &progress);
+  auto import = request.decoder.import_file(file, request.options, &progress);
   if (!import) return import.error();
   if (request.vertical_unit) {
     import->frame.vertical_unit = request.vertical_unit->name;

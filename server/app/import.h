@@ -8,6 +8,7 @@
 
 #include "server/app/catalogue.h"
 #include "server/gdal/crs.h"
+#include "server/gdal/decoder.h"
 #include "server/gdal/import.h"
 
 namespace server::app {
@@ -18,6 +19,7 @@ struct ImportRequest {
   tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
   std::optional<gdal::VerticalUnit> vertical_unit;  // in place of what the file says
   gdal::ImportOptions options;
+  gdal::Decoder decoder;  // who reads the file
 };
 
 /// Reads the file, triangulates its samples and stores the TIN. Reports progress over all of it.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/cli/serve.h"
+#include "server/gdal/decoder.h"
 #include "server/version.h"
 
 namespace server::cli {
@@ -20,12 +21,14 @@ int run(int argc, char** argv) {
   serving->add_option("--data", arguments.data, "Folder of the TINs; made if it is not there");
   serving->add_option("--config", arguments.config,
                       "Configuration file (JSON); see deploy/config.example.json");
+  // How the server runs itself again to read an uploaded file; not for people.
+  const auto* decoding = app.add_subcommand("decode")->group("");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  return serve(arguments);
+  return decoding->parsed() ? gdal::run_decoder() : serve(arguments);
 }
 
 }  // namespace server::cli

@@ -73,6 +73,13 @@ http::ServerOptions http_options(const Config& config) {
   return options;
 }
 
+gdal::Decoder decoder(const Config& config) {
+  return {"/proc/self/exe",
+          {static_cast<std::uint64_t>(config.decoder.memory_bytes),
+           static_cast<std::uint64_t>(config.decoder.file_bytes),
+           static_cast<int>(config.decoder.cpu_seconds), static_cast<int>(config.decoder.seconds)}};
+}
+
 http::Observer observer() {
   return {[](const http::Access& access) {
             obs::log_info("request", {{"id", access.request_id},
@@ -135,6 +142,7 @@ int serve(const ServeArguments& arguments) {
                        static_cast<std::size_t>(config->jobs.queued),
                        static_cast<std::size_t>(config->jobs.kept)});
   api::Context context{**catalogue, jobs, *config};
+  context.decoder = decoder(*config);
   http::Server server(http_options(*config), api::make_router(context), api::error_pages(), observer());
   const auto port = server.start();
   if (!port) return fail(port.error());

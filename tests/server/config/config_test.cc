@@ -57,19 +57,20 @@ TEST(ConfigTest, EveryNumberOfTheExampleCounts) {
 
 TEST(ConfigTest, TheExampleHasEveryKey) {
   constexpr std::size_t kNumbers =
-      (sizeof(LimitConfig) + sizeof(JobConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
+      (sizeof(LimitConfig) + sizeof(DecoderConfig) + sizeof(JobConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
   EXPECT_EQ(example().flatten().size(), kNumbers + 3);  // and listen, data_dir, log_level
 }
 
 TEST(ConfigTest, ValuesAreTaken) {
   const Config config = parsed(R"({"listen": "[::1]:0", "data_dir": "/srv/tins", "log_level": "debug",
-                                   "limits": {"tins": 7}, "jobs": {"workers": 2},
+                                   "limits": {"tins": 7}, "jobs": {"workers": 2}, "decoder": {"seconds": 9},
                                    "http": {"drain_seconds": 0}})");
   EXPECT_EQ(config.listen, (Listen{"::1", 0}));
   EXPECT_EQ(config.data_dir, "/srv/tins");
   EXPECT_EQ(config.log_level, "debug");
   EXPECT_EQ(config.limits.tins, 7);
   EXPECT_EQ(config.jobs.workers, 2);
+  EXPECT_EQ(config.decoder.seconds, 9);
   EXPECT_EQ(config.http.drain_seconds, 0);
 }
 
