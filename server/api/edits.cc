@@ -2,6 +2,7 @@
 #include "server/api/answer.h"
 #include "server/api/positions.h"
 #include "server/api/routes.h"
+#include "server/obs/metrics.h"
 
 namespace server::api {
 
@@ -53,6 +54,7 @@ Result<Response> edit(Context& context, const Request& request) {
     const bool has_place = edited.error().where.starts_with("/");
     return has_place ? within("/ops", edited.error()) : edited.error();
   }
+  obs::metrics().edits.fetch_add(edits->size(), std::memory_order_relaxed);
   Response response = json_answer(proto::edit_result_json(edited->revision, edited->ids));
   response.headers.emplace_back("ETag", entity_tag(**tin, edited->revision, request));
   return response;

@@ -5,6 +5,7 @@
 
 #include "server/gdal/crs.h"
 #include "server/obs/log.h"
+#include "server/obs/metrics.h"
 #include "tin/codec/change.h"
 #include "tin/codec/checkpoint.h"
 
@@ -195,7 +196,10 @@ Result<void> Tin::retire() {
 /// Writes the next revision, and counts it when it is durable.
 Result<void> Tin::journal(const Change& change, const store::RevisionInfo& info) {
   auto durable = store_.append(id(), revision_ + 1, tin::codec::encode_change(change), info);
-  if (durable) ++revision_;
+  if (durable) {
+    ++revision_;
+    obs::metrics().revisions.fetch_add(1, std::memory_order_relaxed);
+  }
   return durable;
 }
 

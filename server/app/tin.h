@@ -93,6 +93,14 @@ class Tin {
     const std::shared_lock lock(mutex_);
     return f(std::as_const(*terrain_), revision_);
   }
+  /// The same if it can be done without waiting for a writer; nothing otherwise.
+  template <class F>
+  auto try_read(F&& f) const
+      -> std::optional<decltype(f(std::declval<const tin::terrain::Terrain&>(), std::uint64_t{}))> {
+    const std::shared_lock lock(mutex_, std::try_to_lock);
+    if (!lock) return std::nullopt;
+    return f(std::as_const(*terrain_), revision_);
+  }
   Version version() const;
   Summary summary() const;
 

@@ -170,7 +170,8 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
   }
 
   awaitable<bool> handle(Exchange& exchange) {
-    std::optional<Answer> answer;
+    std::optional<Answer> answer = exchange.handle_quickly();
+    if (answer) co_return co_await deliver(exchange, *answer);
     auto job = [&] {
       if (!context_.aborted) answer = exchange.handle();
     };

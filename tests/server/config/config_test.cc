@@ -58,7 +58,7 @@ TEST(ConfigTest, EveryNumberOfTheExampleCounts) {
 TEST(ConfigTest, TheExampleHasEveryKey) {
   constexpr std::size_t kNumbers =
       (sizeof(LimitConfig) + sizeof(DecoderConfig) + sizeof(JobConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
-  EXPECT_EQ(example().flatten().size(), kNumbers + 3);  // and listen, data_dir, log_level
+  EXPECT_EQ(example().flatten().size(), kNumbers + 6);  // and listen, data_dir, log_level, three of auth
 }
 
 TEST(ConfigTest, ValuesAreTaken) {
