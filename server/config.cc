@@ -36,6 +36,7 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/upload_bytes", {&limits.upload_bytes, 1024, 1024 * kGiB}},
           {"/limits/raster_pixels", {&limits.raster_pixels, 1, kGiB}},
           {"/limits/export_pixels", {&limits.export_pixels, 1, 16 * kGiB}},
+          {"/limits/memory_bytes", {&limits.memory_bytes, 0, 1024 * 1024 * kGiB}},
           {"/limits/vertices_per_tin", {&limits.vertices_per_tin, 1, 500 * kMillion}},
           {"/limits/tins", {&limits.tins, 1, kMillion}},
           {"/limits/edits_per_request", {&limits.edits_per_request, 1, 10 * kMillion}},

@@ -49,6 +49,8 @@ Result<Response> edit(Context& context, const Request& request) {
   if (!positions) return positions.error();
   const auto edits = to_world_edits(*message, *positions);
   if (!edits) return edits.error();
+  const std::uint64_t growth = edits->size() * app::kBytesPerVertex + (*tin)->copy_bytes();
+  if (auto room = context.catalogue.memory().check(growth); !room) return room.error();
   const auto edited = (*tin)->edit(*edits, *expected, {app::now_ms(), "", ""});
   if (!edited) {
     const bool has_place = edited.error().where.starts_with("/");

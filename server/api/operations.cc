@@ -61,6 +61,12 @@ Response metrics_answer(const Context& context) {
   }
   write_data(context, text);
   write_jobs(context, text);
+  const auto& memory = context.catalogue.memory();
+  text.family("tinsmith_memory_estimate_bytes", "gauge",
+              "Memory of terrains, their versions and jobs, estimated")
+      .sample("", static_cast<double>(memory.used()));
+  text.family("tinsmith_memory_limit_bytes", "gauge", "What that may be at most")
+      .sample("", static_cast<double>(memory.limit()));
   text.family("process_resident_memory_bytes", "gauge", "Memory of the process in RAM")
       .sample("", static_cast<double>(obs::resident_bytes()));
   text.family("tinsmith_draining", "gauge", "1 while the server finishes before it stops")

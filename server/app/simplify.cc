@@ -13,6 +13,9 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
     if (auto room = catalogue.check_room(request.as); !room) return room.error();
   }
   const Version seen = request.tin->version();
+  // The working TIN, and what is left of it at the end.
+  const auto memory = catalogue.memory().lease(2 * estimated_bytes(*seen.terrain));
+  if (!memory) return memory.error();
   progress.begin_phase(0, 0.95);
   auto outcome = tin::simplify::simplify(*seen.terrain, request.options, &progress);
   if (!outcome) return outcome.error();
@@ -22,7 +25,7 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   if (request.as) {
     auto made =
         catalogue.create({request.as, request.tin->title() + ", simplified",
-                          seen.terrain->without(outcome->removed), request.tin->duplicates(), std::nullopt});
+                          seen.terrain->without(outcome->removed), request.tin->duplicates(), std::nullopt, true});
     if (!made) return made.error();
     result.tin = *made;
   } else {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/app/memory.h"
 #include "server/gdal/crs.h"
 #include "server/obs/log.h"
 #include "server/obs/metrics.h"
@@ -115,11 +116,36 @@ Version Tin::version() const {
 
 void Tin::own_terrain() {
   if (versions_out_->load(std::memory_order_acquire) == 0) return;
+  remember_past();
   terrain_ = std::make_shared<Terrain>(*terrain_);
   versions_out_ = std::make_shared<std::atomic<int>>(0);
 }
 
+void Tin::remember_past() {
+  const std::lock_guard lock(past_mutex_);
+  past_.emplace_back(terrain_);
+}
+
+std::uint64_t Tin::held_bytes() const {
+  if (const auto now = try_read([](const Terrain& terrain, std::uint64_t) { return estimated_bytes(terrain); })) {
+    present_bytes_ = *now;
+  }
+  std::uint64_t bytes = present_bytes_;
+  const std::lock_guard lock(past_mutex_);
+  std::erase_if(past_, [](const auto& past) { return past.expired(); });
+  for (const auto& past : past_) {
+    if (const auto terrain = past.lock()) bytes += estimated_bytes(*terrain);
+  }
+  return bytes;
+}
+
+std::uint64_t Tin::copy_bytes() const {
+  const std::shared_lock lock(mutex_);
+  return versions_out_->load(std::memory_order_relaxed) == 0 ? 0 : estimated_bytes(*terrain_);
+}
+
 void Tin::replace_terrain(std::shared_ptr<Terrain> terrain) {
+  if (versions_out_->load(std::memory_order_acquire) != 0) remember_past();
   terrain_ = std::move(terrain);
   versions_out_ = std::make_shared<std::atomic<int>>(0);
 }

@@ -104,6 +104,12 @@ class Tin {
   Version version() const;
   Summary summary() const;
 
+  /// What the present terrain takes, and those of versions that are out still; as far as known without
+  /// waiting.
+  std::uint64_t held_bytes() const;
+  /// What the next edit will copy because a version is out.
+  std::uint64_t copy_bytes() const;
+
   /// Remembers a version for a while, so that pages can go on from it when edits arrive; see page_version().
   void keep_for_pages(const Version& version) { kept_.keep(version); }
   /// Frees what was remembered too long ago. To be called now and then.
@@ -136,7 +142,8 @@ class Tin {
  private:
   using Terrain = tin::terrain::Terrain;
 
-  void own_terrain();  // copies it if a version is out; with mutex_ held
+  void remember_past();  // so that held_bytes() counts it
+  void own_terrain();    // copies it if a version is out; with mutex_ held
   tin::base::Result<std::shared_ptr<Terrain>> fit_open_frame(std::span<const WorldEdit> edits) const;
   tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
   void replace_terrain(std::shared_ptr<Terrain> terrain);
@@ -152,6 +159,9 @@ class Tin {
   mutable FairSharedMutex mutex_;
   std::shared_ptr<Terrain> terrain_;
   mutable std::shared_ptr<std::atomic<int>> versions_out_;  // of terrain_
+  mutable std::mutex past_mutex_;
+  mutable std::vector<std::weak_ptr<const Terrain>> past_;  // those that the present one was copied from
+  mutable std::atomic<std::uint64_t> present_bytes_{0};     // as last seen
   OpenResolution open_resolution_;
   std::uint64_t revision_;
   bool retired_ = false;
