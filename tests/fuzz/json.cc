@@ -58,8 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto created = proto::read_create_tin(bytes, 100);
   const auto edits = proto::read_edit_request(bytes, 100);
   const auto elevations = proto::read_elevation_request(bytes, 100);
-  const auto simplify = proto::read_simplify_request(bytes);
-  if (!document) TIN_CHECK(!created && !edits && !elevations && !simplify);
+  if (!document) TIN_CHECK(!created && !edits && !elevations);
   if (edits) TIN_CHECK(edits->ops.size() <= 100);
   if (elevations) TIN_CHECK(elevations->positions.size() <= 100);
   return 0;
