@@ -216,6 +216,12 @@ std::size_t find_head_end(std::string_view text, std::size_t from) {
   return std::string_view::npos;
 }
 
+bool is_field_line(std::string_view line) {
+  const std::size_t colon = line.find(':');
+  return colon != std::string_view::npos && is_token(line.substr(0, colon)) &&
+         is_field_value(line.substr(colon + 1));
+}
+
 std::variant<Head, Refusal> read_head(std::string_view raw, const HeadLimits& limits) {
   return HeadReader(limits).read(raw);
 }

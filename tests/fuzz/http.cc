@@ -35,6 +35,7 @@ namespace {
 using server::http::BodyParser;
 
 constexpr std::uint64_t kBodyLimit = 4096;
+constexpr std::size_t kFramingLimit = 512;
 
 /// What a connection was taken for.
 struct Seen {
@@ -50,7 +51,7 @@ std::optional<std::string> read_body(BodyParser& parser, std::string_view bytes,
   std::string body;
   std::array<char, 61> block{};
   std::size_t given = std::min(step, bytes.size());
-  parser.set_limit(kBodyLimit);
+  parser.set_limits(kBodyLimit, kFramingLimit);
   while (!parser.done()) {
     const auto result = parser.parse(bytes.substr(used, given - used), block);
     TIN_CHECK(result.used <= given - used && result.filled <= block.size());
@@ -76,11 +77,11 @@ Seen read_connection(std::string_view bytes, std::size_t step) {
     if (end == std::string_view::npos) return seen;
     const auto read = server::http::read_head(rest.substr(0, end), {});
     const auto* head = std::get_if<server::http::Head>(&read);
-    BodyParser parser;
-    if (head == nullptr || !parser.begin(rest.substr(0, end), *head)) {
+    if (head == nullptr) {
       seen.broken = true;
       return seen;
     }
+    BodyParser parser(*head);
     TIN_CHECK(!(head->chunked && head->content_length));
     std::size_t used = 0;
     const auto body = head->has_body() ? read_body(parser, rest.substr(end), step, used, seen.broken)
