@@ -39,22 +39,27 @@ bool contains(const List& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-std::string http_date() {
+/// Of this second; made once in it for each thread.
+const std::string& http_date() {
+  thread_local std::time_t made_at = -1;
+  thread_local std::string date;
   const std::time_t now = std::time(nullptr);
+  if (now == made_at) return date;
   std::tm utc{};
   gmtime_r(&now, &utc);
   std::array<char, 40> text{};
   const std::size_t size = std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc);
-  return std::string(text.data(), size);
+  date.assign(text.data(), size);
+  made_at = now;
+  return date;
 }
 
 /// A handler that echoes what a client sent must not let it begin a new line.
-std::string one_line(std::string text) {
-  for (char& c : text) {
+void append_one_line(std::string& head, std::string_view text) {
+  for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) c = ' ';
+    head += byte < 0x20 || byte == 0x7f ? ' ' : c;
   }
-  return text;
 }
 
 std::string_view field(const NamedValues& headers, std::string_view lower_name) {
@@ -176,14 +181,21 @@ Answer make_answer(Response response, const AnswerContext& context) {
   const auto reason =
       boost::beast::http::obsolete_reason(static_cast<boost::beast::http::status>(answer.status));
   std::string& head = answer.head;
-  head =
-      "HTTP/1.1 " + std::to_string(answer.status) + " " + std::string(reason.data(), reason.size()) + "\r\n";
-  head += "Date: " + http_date() + "\r\nServer: tinsmith\r\nX-Request-Id: " + context.request_id + "\r\n";
-  head += kCors;
+  head.reserve(512);
+  head.append("HTTP/1.1 ").append(std::to_string(answer.status)).append(" ");
+  head.append(reason.data(), reason.size());
+  head.append("\r\nDate: ").append(http_date());
+  head.append("\r\nServer: tinsmith\r\nX-Request-Id: ")
+      .append(context.request_id)
+      .append("\r\n")
+      .append(kCors);
   for (const auto& [name, value] : response.headers) {
     const std::string lower = lower_case(name);
     if (contains(kReserved, lower) || (unchanged && contains(kOfTheBody, lower))) continue;
-    head += one_line(name) + ": " + one_line(value) + "\r\n";
+    append_one_line(head, name);
+    head += ": ";
+    append_one_line(head, value);
+    head += "\r\n";
   }
   if (coding.varies) head += "Vary: Accept-Encoding\r\n";
   // HEAD does not make the body, so its length is not known where it would be encoded.
