@@ -1,6 +1,7 @@
 #include "server/http/body_parser.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace server::http {
 namespace {
@@ -14,8 +15,47 @@ int hex_digit(char c) {
   return -1;
 }
 
-bool may_extend(char c) {
-  return c == '\t' || (c >= 0x20 && c < 0x7f);
+constexpr std::size_t kMostExtensionBytes = 1024;  // of one chunk
+
+std::string_view skip_blanks(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+}
+
+/// What is left of `text` behind the token at its front, or nothing if there is none.
+std::optional<std::string_view> skip_token(std::string_view text) {
+  std::size_t size = 0;
+  while (size < text.size() && is_token(text.substr(size, 1))) ++size;
+  if (size == 0) return std::nullopt;
+  return text.substr(size);
+}
+
+/// The same for a quoted string, which must end.
+std::optional<std::string_view> skip_quoted(std::string_view text) {
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') return text.substr(i + 1);
+    if (c == '\\') ++i;
+    if (c != '\t' && (c < 0x20 || c == 0x7f)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// Whether `text` is what may follow the first semicolon of a chunk's line: `a;b=c;d="e"`.
+bool is_extension(std::string_view text) {
+  while (true) {
+    auto rest = skip_token(skip_blanks(text));
+    if (!rest) return false;
+    text = skip_blanks(*rest);
+    if (text.starts_with('=')) {
+      text = skip_blanks(text.substr(1));
+      rest = text.starts_with('"') ? skip_quoted(text) : skip_token(text);
+      if (!rest) return false;
+      text = skip_blanks(*rest);
+    }
+    if (text.empty()) return true;
+    if (!text.starts_with(';')) return false;
+    text.remove_prefix(1);
+  }
 }
 
 }  // namespace
@@ -65,13 +105,12 @@ void BodyParser::take_framing(char c) {
       return take_size(c);
     case At::kExtension:
       if (c == '\r') {
-        at_ = At::kSizeLf;
-      } else if (!may_extend(c) || framing_left_ == 0) {
-        at_ = At::kBroken;
-      } else {
-        --framing_left_;
+        at_ = is_extension(line_) ? At::kSizeLf : At::kBroken;
+        line_.clear();
+        return;
       }
-      return;
+      if (line_.size() == kMostExtensionBytes) at_ = At::kBroken;
+      return take_of_line(c);
     case At::kSizeLf:
       if (c != '\n') {
         at_ = At::kBroken;
@@ -85,13 +124,9 @@ void BodyParser::take_framing(char c) {
     case At::kTrailer:
       if (c == '\r') {
         at_ = At::kTrailerLf;
-      } else if (framing_left_ == 0) {
-        at_ = At::kBroken;
-      } else {
-        --framing_left_;
-        line_ += c;
+        return;
       }
-      return;
+      return take_of_line(c);
     case At::kTrailerLf:
       if (c != '\n') {
         at_ = At::kBroken;
@@ -104,6 +139,15 @@ void BodyParser::take_framing(char c) {
     case At::kTooLarge:
       return;
   }
+}
+
+void BodyParser::take_of_line(char c) {
+  if (at_ == At::kBroken || framing_left_ == 0 || c == '\n') {
+    at_ = At::kBroken;
+    return;
+  }
+  --framing_left_;
+  line_ += c;
 }
 
 void BodyParser::take_size(char c) {

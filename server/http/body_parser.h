@@ -1,7 +1,8 @@
 // Takes a request's body out of its framing, as the framing guard has read it. Knows no sockets.
 //
 // Our own reader, since Beast 1.74 reads a chunk's extension differently when it comes in pieces (an open
-// quotation mark goes on over the end of the line), and so sees another end of the request.
+// quotation mark goes on over the end of the line), and so sees another end of the request. Here such a line
+// is refused, and so is all else that the grammar (RFC 9112, 7.1) does not have.
 #pragma once
 
 #include <cstddef>
@@ -60,6 +61,7 @@ class BodyParser {
 
   void take_framing(char c);
   void take_size(char c);
+  void take_of_line(char c);
   void end_size_line();
   void end_trailer_line();
 
@@ -69,7 +71,7 @@ class BodyParser {
   std::uint64_t body_left_ = std::numeric_limits<std::uint64_t>::max();
   std::size_t framing_left_ = std::numeric_limits<std::size_t>::max();
   int digits_ = 0;
-  std::string line_;  // of the trailer
+  std::string line_;  // an extension or a field of the trailer, as far as it has come
 };
 
 }  // namespace server::http

@@ -72,9 +72,20 @@ TEST(BodyParserTest, ChunksArePutTogether) {
 }
 
 /// Found by fuzz_http: Beast takes the end of the line into the quoted string when all comes at once.
-TEST(BodyParserTest, AnOpenQuotationMarkEndsWithItsLine) {
-  const std::string bytes = "5;a=\"\r\nhello\r\n0\r\n\r\n";
-  EXPECT_EQ(outcome_of(chunked(), bytes), (Outcome{State::kDone, "hello", bytes.size()}));
+TEST(BodyParserTest, AnOpenQuotationMarkIsRefused) {
+  EXPECT_EQ(outcome_of(chunked(), "5;a=\"\r\nhello\r\n0\r\n\r\n").state, State::kBroken);
+}
+
+TEST(BodyParserTest, ExtensionsAreReadStrictly) {
+  for (const char* good : {"1;a", "1;a;b", "1;a=b", "1; a = \"b;c\\\"\" ;d", "1;a=\"\""}) {
+    EXPECT_EQ(outcome_of(chunked(), std::string(good) + "\r\nx\r\n0\r\n\r\n").body, "x") << good;
+  }
+  for (const char* bad : {"1;", "1;;a", "1;a=", "1;\"a\"", "1;a=\"b\"c", "1;a b", "1;a=\"b\\\"", "1;=b"}) {
+    EXPECT_EQ(outcome_of(chunked(), std::string(bad) + "\r\nx\r\n0\r\n\r\n").state, State::kBroken) << bad;
+  }
+  const std::string longest = "1;" + std::string(1024, 'a');
+  EXPECT_EQ(parse(chunked(), longest + "\r\nx\r\n0\r\n\r\n", 5000, 100, 5000).state, State::kDone);
+  EXPECT_EQ(parse(chunked(), longest + "a\r\nx\r\n0\r\n\r\n", 5000, 100, 5000).state, State::kBroken);
 }
 
 TEST(BodyParserTest, WhatIsNoChunkIsBroken) {
