@@ -8,11 +8,11 @@
 #include <limits>
 #include <span>
 
-#include "proto/bbox.h"
 #include "proto/crs_uri.h"
 #include "server/api/answer.h"
 #include "server/api/positions.h"
 #include "server/api/routes.h"
+#include "server/api/surface_work.h"
 
 namespace server::api {
 
@@ -25,10 +25,6 @@ namespace {
 
 constexpr std::string_view kDoubles = "application/octet-stream";
 
-tin::query::Voids engine_voids(proto::Voids voids) {
-  return voids == proto::Voids::kFill ? tin::query::Voids::kFill : tin::query::Voids::kKeep;
-}
-
 /// The elevation at a position of the TIN's CRS, snapped to the lattice; nothing beyond the lattice either.
 std::optional<tin::query::Elevation> elevation_at(const Terrain& terrain, ElevationQuery& query, double x,
                                                   double y) {
@@ -36,16 +32,11 @@ std::optional<tin::query::Elevation> elevation_at(const Terrain& terrain, Elevat
   return at ? query.at(*at) : std::nullopt;
 }
 
-Result<double> required_number(const Request& request, const std::string& name) {
-  const auto text = request.query_value(name);
-  if (!text) return error(Code::kMalformed, "The parameter " + name + " is missing.", "query:" + name);
-  return proto::parse_number(*text, "query:" + name);
-}
-
 /// The parameters of a GET.
 struct Asked {
   double x = 0, y = 0;
   proto::Voids voids = proto::Voids::kKeep;
+  tin::query::Interpolation by = tin::query::Interpolation::kLinear;
 };
 
 Result<Asked> read_asked(const Request& request) {
@@ -54,12 +45,15 @@ Result<Asked> read_asked(const Request& request) {
   if (!y) return y.error();
   const auto voids = proto::parse_voids(request.query_value("voids").value_or("keep"), "query:voids");
   if (!voids) return voids.error();
-  return Asked{*x, *y, *voids};
+  const auto by = proto::parse_interpolation(request.query_value("interpolation").value_or("linear"),
+                                             "query:interpolation");
+  if (!by) return by.error();
+  return Asked{*x, *y, *voids, *by};
 }
 
 proto::ElevationAnswer look_up(const Terrain& terrain, std::uint64_t revision, const Asked& asked,
                                const std::optional<proto::Position2>& own) {
-  ElevationQuery query(terrain, engine_voids(asked.voids));
+  ElevationQuery query(terrain, engine_voids(asked.voids), asked.by);
   const auto found = own ? elevation_at(terrain, query, own->x, own->y) : std::nullopt;
   proto::ElevationAnswer out;
   out.revision = revision;
@@ -105,6 +99,7 @@ std::optional<Response> one_at_once(const Context& context, const Request& reque
   if (!tin) return std::nullopt;
   const auto asked = read_asked(request);
   if (!asked) return std::nullopt;
+  if (asked->by != tin::query::Interpolation::kLinear) return std::nullopt;
   const auto answer = (*tin)->try_read([&](const Terrain& terrain, std::uint64_t revision) {
     return look_up(terrain, revision, *asked, proto::Position2{asked->x, asked->y});
   });
@@ -112,10 +107,16 @@ std::optional<Response> one_at_once(const Context& context, const Request& reque
   return one_answer(**tin, request, *answer);
 }
 
+/// How positions between samples get their elevation.
+struct Manner {
+  proto::Voids voids = proto::Voids::kKeep;
+  tin::query::Interpolation by = tin::query::Interpolation::kLinear;
+};
+
 constexpr std::size_t kAtOnce = 4096;  // positions that are located together
 
 /// Fills z[begin..end) from positions in the TIN's CRS. Many walks at a time hide the time that memory takes.
-void look_up_block(const Terrain& terrain, proto::Voids voids, std::span<const double> x,
+void look_up_block(const Terrain& terrain, const Manner& manner, std::span<const double> x,
                    std::span<const double> y, std::span<const std::uint8_t> ok, std::size_t begin,
                    std::size_t end, std::vector<std::optional<double>>& z) {
   std::vector<tin::exact::Point> points;
@@ -130,7 +131,7 @@ void look_up_block(const Terrain& terrain, proto::Voids voids, std::span<const d
   const bool has_triangles = terrain.mesh().dimension() == 2;
   std::vector<tin::delaunay::Location> locations;
   if (has_triangles) terrain.triangulation().locate_many(points, locations);
-  ElevationQuery query(terrain, engine_voids(voids));
+  ElevationQuery query(terrain, engine_voids(manner.voids), manner.by);
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (has_triangles) query.start_from(locations[k].triangle);
     if (const auto found = query.at(points[k])) z[indices[k]] = found->z;
@@ -139,7 +140,7 @@ void look_up_block(const Terrain& terrain, proto::Voids voids, std::span<const d
 
 /// Elevations at positions of `crs`; nothing where there is none.
 Result<std::vector<std::optional<double>>> elevations(const Terrain& terrain, std::string_view crs,
-                                                      std::string where, proto::Voids voids,
+                                                      std::string where, const Manner& manner,
                                                       std::vector<double> x, std::vector<double> y) {
   auto positions = Positions::between(crs, terrain.frame().crs, std::move(where));
   if (!positions) return positions.error();
@@ -147,7 +148,7 @@ Result<std::vector<std::optional<double>>> elevations(const Terrain& terrain, st
   positions->convert(x, y, ok);
   std::vector<std::optional<double>> z(x.size());
   for (std::size_t begin = 0; begin < x.size(); begin += kAtOnce) {
-    look_up_block(terrain, voids, x, y, ok, begin, std::min(begin + kAtOnce, x.size()), z);
+    look_up_block(terrain, manner, x, y, ok, begin, std::min(begin + kAtOnce, x.size()), z);
   }
   return z;
 }
@@ -169,6 +170,9 @@ Result<Response> many_doubles(const Context& context, const app::Tin& tin, const
   }
   const auto voids = proto::parse_voids(request.query_value("voids").value_or("keep"), "query:voids");
   if (!voids) return voids.error();
+  const auto by = proto::parse_interpolation(request.query_value("interpolation").value_or("linear"),
+                                             "query:interpolation");
+  if (!by) return by.error();
   std::vector<double> x(count), y(count);
   for (std::size_t i = 0; i < count; ++i) {
     std::memcpy(&x[i], request.body.data() + i * kPair, sizeof(double));
@@ -183,7 +187,7 @@ Result<Response> many_doubles(const Context& context, const app::Tin& tin, const
     if (!name) return name.error();
     crs = *name;
   }
-  const auto z = elevations(*version.terrain, crs, "query:crs", *voids, std::move(x), std::move(y));
+  const auto z = elevations(*version.terrain, crs, "query:crs", {*voids, *by}, std::move(x), std::move(y));
   if (!z) return z.error();
   std::string bytes(z->size() * sizeof(double), '\0');
   for (std::size_t i = 0; i < z->size(); ++i) {
@@ -201,7 +205,7 @@ Result<Response> many(Context& context, const Request& request) {
   if (!tin) return tin.error();
   if (media_type(request) == kDoubles) return many_doubles(context, **tin, request);
   if (!request.query.empty()) {
-    return error(Code::kUnknownParameter, "With a body of JSON, crs and voids are members of it.",
+    return error(Code::kUnknownParameter, "With a body of JSON, its parameters are members of it.",
                  "query:" + request.query.front().first);
   }
   if (auto json = require_json(request); !json) return json.error();
@@ -217,7 +221,7 @@ Result<Response> many(Context& context, const Request& request) {
     y.push_back(position.y);
   }
   const auto z = elevations(*version.terrain, message->crs.value_or(version.terrain->frame().crs), "/crs",
-                            message->voids, std::move(x), std::move(y));
+                            {message->voids, message->interpolation}, std::move(x), std::move(y));
   if (!z) return z.error();
   Response response = json_answer(proto::elevations_json(*z, version.revision));
   response.headers.emplace_back("ETag", entity_tag(**tin, version.revision, request));
@@ -231,12 +235,12 @@ void add_elevation(http::Router& router, Context& context) {
   const std::string pattern = "/tins/{tin}/elevation";
   router.add({.method = Method::kGet,
               .pattern = pattern,
-              .query = {"x", "y", "crs", "voids"},
+              .query = {"x", "y", "crs", "voids", "interpolation"},
               .handler = guarded([&context](Request& request) { return one(context, request); }),
               .quick = [&context](Request& request) { return one_at_once(context, request); }});
   router.add({.method = Method::kPost,
               .pattern = pattern,
-              .query = {"crs", "voids"},
+              .query = {"crs", "voids", "interpolation"},
               .body = http::BodyKind::kMemory,
               .need = http::Need::kRead,
               .handler = guarded([&context](Request& request) { return many(context, request); })});

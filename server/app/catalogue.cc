@@ -68,6 +68,7 @@ Result<void> Catalogue::load(const store::TinRecord& record) {
     const auto change = tin::codec::decode_change(row.record);
     if (!change) return change.error();
     if (auto replayed = state->terrain.replay(*change); !replayed) return replayed;
+    state->terrain.amend(*change);
     state->revision = row.revision;
   }
   obs::log_info("tin_loaded", {{"tin", record.id},
@@ -120,8 +121,8 @@ Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
     return error(Code::kTooLarge,
                  "A TIN may have at most " + std::to_string(limits_.vertices_per_tin) + " vertices.");
   }
-  // Its caller has it in memory already; where that was not reserved, it goes again.
-  if (auto room = memory_.check(tin.leased ? 0 : estimated_bytes(tin.terrain)); !room) return room.error();
+  // Its caller has it in memory already; without room for it it goes again.
+  if (auto room = memory_.check(estimated_bytes(tin.terrain)); !room) return room.error();
   const std::string id = tin.id.value_or(make_up_id());
   const std::string checkpoint = Tin::encode(tin.terrain, tin.duplicates, tin.open_resolution, 1);
   {
@@ -134,7 +135,7 @@ Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
                  tin.duplicates,
                  tin.open_resolution,
                  1};
-  const auto stored = store_->create_tin(state.record, state.revision, checkpoint);
+  const auto stored = store_->create_tin(state.record, state.revision, checkpoint, tin.source);
   const std::lock_guard lock(mutex_);
   being_created_.erase(id);
   if (!stored) return stored.error();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <type_traits>
+#include <variant>
 
 #include "tin/exact/point.h"
 
@@ -17,7 +18,8 @@ using tin::base::Result;
 using tin::terrain::Placement;
 using tin::terrain::SourceGrid;
 
-constexpr char kProgress = 'P', kHead = 'H', kPlacements = 'V', kMask = 'G', kError = 'E', kEnd = 'Z';
+constexpr char kProgress = 'P', kHead = 'H', kPlacements = 'V', kMask = 'G', kHeights = 'S', kError = 'E',
+               kEnd = 'Z';
 constexpr std::size_t kFrameHead = 5;  // the kind, and the length in four bytes
 constexpr std::size_t kMostFrameBytes = std::size_t{1} << 20;
 constexpr std::size_t kMostTextBytes = 64 * 1024;
@@ -60,6 +62,11 @@ class Reader {
       bytes_.remove_prefix(sizeof value);
     }
   }
+  void get(bool& truth) {
+    char value = 0;
+    get(value);
+    truth = value != 0;
+  }
   void get(std::string& text) {
     std::uint32_t size = 0;
     get(size);
@@ -99,10 +106,10 @@ bool send_array(char kind, const std::vector<T>& items, const Sink& sink) {
 template <class Options, class Visit>
 void visit_options(Options& options, Visit visit) {
   auto& [file_name, content_type, format, crs, resolution_x, resolution_y, layer, z_field, max_samples,
-         max_pixels] = options;
+         max_pixels, heights_only] = options;
   visit(file_name), visit(content_type), visit(format), visit(crs);
   visit(resolution_x), visit(resolution_y), visit(layer), visit(z_field);
-  visit(max_samples), visit(max_pixels);
+  visit(max_samples), visit(max_pixels), visit(heights_only);
 }
 
 template <class Frame, class Visit>
@@ -149,6 +156,40 @@ bool sound(const SourceGrid& grid, std::uint64_t max_pixels) {
          std::all_of(grid.geotransform.begin(), grid.geotransform.end(), finite);
 }
 
+/// Makes the array of that kind, empty. False if there is no such kind or the shift is out of all reason.
+bool choose_kind(tin::terrain::SourceSamples::Heights& heights, char kind) {
+  constexpr int kMostShift = 60;
+  if (heights.shift < -kMostShift || heights.shift > kMostShift) return false;
+  switch (kind) {
+    case 0:
+      heights.stored.emplace<0>();
+      return true;
+    case 1:
+      heights.stored.emplace<1>();
+      return true;
+    case 2:
+      heights.stored.emplace<2>();
+      return true;
+    case 3:
+      heights.stored.emplace<3>();
+      return true;
+    default:
+      return false;
+  }
+}
+static_assert(std::variant_size_v<decltype(tin::terrain::SourceSamples::Heights::stored)> == 4);
+
+/// Whether every pixel that counts as a sample has a height.
+bool sound_heights(const Import& import) {
+  const std::size_t count = import.heights.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& valid = import.grid->valid;
+    const bool is_sample = valid.empty() || ((valid[i / 64] >> (i % 64)) & 1U) != 0;
+    if (is_sample && !finite(import.heights.at(i))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string encode_options(const ImportOptions& options) {
@@ -172,12 +213,15 @@ bool send_progress(double fraction, const Sink& sink) {
 }
 
 bool send_import(const Import& import, const Sink& sink) {
-  const auto& [frame, placements, grid, driver] = import;
+  const auto& [frame, placements, grid, heights, driver] = import;
   Writer out;
   const auto put = [&](const auto& member) { out.put(member); };
   visit_frame(frame, put);
   out.put(driver);
   out.put(std::uint64_t{placements.size()});
+  out.put(static_cast<char>(heights.stored.index()));
+  out.put(heights.shift);
+  out.put(std::uint64_t{heights.size()});
   out.put(static_cast<char>(grid != nullptr));
   if (grid) {
     char has_nodata = grid->nodata.has_value() ? 1 : 0;
@@ -186,7 +230,10 @@ bool send_import(const Import& import, const Sink& sink) {
     out.put(std::uint64_t{grid->valid.size()});
   }
   return send_frame(kHead, out.take(), sink) && send_array(kPlacements, placements, sink) &&
-         (!grid || send_array(kMask, grid->valid, sink)) && send_frame(kEnd, {}, sink);
+         (!grid || send_array(kMask, grid->valid, sink)) &&
+         std::visit([&](const auto& numbers) { return send_array(kHeights, numbers, sink); },
+                    heights.stored) &&
+         send_frame(kEnd, {}, sink);
 }
 
 bool send_error(const tin::base::Error& problem, const Sink& sink) {
@@ -237,6 +284,7 @@ Result<void> ImportReceiver::take_frame(char kind, std::string_view body) {
   if (!import_) return nonsense();
   if (kind == kPlacements) return take_placements(body);
   if (kind == kMask) return take_mask(body);
+  if (kind == kHeights) return take_heights(body);
   return kind == kEnd && body.empty() ? conclude() : nonsense();
 }
 
@@ -247,6 +295,11 @@ Result<void> ImportReceiver::take_head(std::string_view body) {
   visit_frame(import.frame, get);
   in.get(import.driver);
   in.get(placements_);
+  char kind_of_heights = 0;
+  in.get(kind_of_heights);
+  in.get(import.heights.shift);
+  in.get(heights_);
+  if (!in.good() || !choose_kind(import.heights, kind_of_heights)) return nonsense();
   char has_grid = 0;
   in.get(has_grid);
   if (has_grid != 0) {
@@ -259,10 +312,12 @@ Result<void> ImportReceiver::take_head(std::string_view body) {
     if (!in.good() || !sound(*grid, max_pixels_)) return nonsense();
     const auto pixels = static_cast<std::uint64_t>(grid->width) * static_cast<std::uint64_t>(grid->height);
     if (mask_words_ != 0 && mask_words_ != (pixels + 63) / 64) return nonsense();
+    if (heights_ != 0 && heights_ != pixels) return nonsense();
     grid->valid.reserve(mask_words_);
     import.grid = std::move(grid);
   }
   if (!in.done() || !sound(import.frame) || placements_ > max_samples_) return nonsense();
+  if (heights_ != 0 && !import.grid) return nonsense();
   import.placements.reserve(placements_);
   import_ = std::move(import);
   return {};
@@ -293,6 +348,21 @@ Result<void> ImportReceiver::take_mask(std::string_view body) {
   return {};
 }
 
+Result<void> ImportReceiver::take_heights(std::string_view body) {
+  const bool taken = std::visit(
+      [&](auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        const std::size_t before = numbers.size(), count = body.size() / sizeof(Number);
+        if (body.size() % sizeof(Number) != 0 || count > heights_ - before) return false;
+        numbers.resize(before + count);
+        std::memcpy(numbers.data() + before, body.data(), body.size());
+        return true;
+      },
+      import_->heights.stored);
+  if (!taken) return nonsense();
+  return {};
+}
+
 Result<void> ImportReceiver::take_error(std::string_view body) {
   std::uint32_t code = 0;
   tin::base::Error problem;
@@ -309,6 +379,7 @@ Result<void> ImportReceiver::take_error(std::string_view body) {
 Result<void> ImportReceiver::conclude() {
   if (import_->placements.size() != placements_) return nonsense();
   if (import_->grid && import_->grid->valid.size() != mask_words_) return nonsense();
+  if (import_->heights.size() != heights_ || !sound_heights(*import_)) return nonsense();
   outcome_ = Result<Import>(*std::move(import_));
   return {};
 }

@@ -45,6 +45,7 @@ class ImportReceiver {
   tin::base::Result<void> take_head(std::string_view body);
   tin::base::Result<void> take_placements(std::string_view body);
   tin::base::Result<void> take_mask(std::string_view body);
+  tin::base::Result<void> take_heights(std::string_view body);
   tin::base::Result<void> take_error(std::string_view body);
   tin::base::Result<void> conclude();
 
@@ -54,6 +55,7 @@ class ImportReceiver {
   std::optional<Import> import_;  // since its head came
   std::uint64_t placements_ = 0;  // that the head promised
   std::uint64_t mask_words_ = 0;
+  std::uint64_t heights_ = 0;
   std::optional<tin::base::Result<Import>> outcome_;
 };
 

@@ -59,6 +59,14 @@ TEST(ConfigTest, EveryNumberOfTheExampleCounts) {
   EXPECT_EQ(numbers, kNumbers);
 }
 
+TEST(ConfigTest, APublicUrlIsOneOfTheWeb) {
+  EXPECT_EQ(parsed(R"({"public_url":"https://terrain.example.org/a"})").public_url, "https://terrain.example.org/a");
+  EXPECT_EQ(parsed(R"({"public_url":""})").public_url, "");
+  for (const char* wrong : {"7", "\"ftp://a\"", "\"http://a/\"", "\"http://a b\"", "\"http://a?x\"", "\"a.example.org\""}) {
+    expect_error(std::string(R"({"public_url":)") + wrong + "}", Code::kInvalidValue, "/public_url");
+  }
+}
+
 TEST(ConfigTest, TheExampleHasEveryKey) {
   EXPECT_EQ(example().flatten().size(), kNumbers + 6);  // and listen, data_dir, log_level, three of auth
 }

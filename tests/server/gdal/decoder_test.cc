@@ -36,6 +36,11 @@ void expect_equal(const Import& a, const Import& b) {
   EXPECT_EQ(a.frame, b.frame);
   EXPECT_EQ(a.placements, b.placements);
   EXPECT_EQ(a.driver, b.driver);
+  EXPECT_EQ(a.heights.size(), b.heights.size());
+  for (std::size_t i = 0; i < a.heights.size(); ++i) {
+    const double left = a.heights.at(i), right = b.heights.at(i);
+    EXPECT_TRUE(left == right || (left != left && right != right)) << i;
+  }
   ASSERT_EQ(a.grid == nullptr, b.grid == nullptr);
   if (a.grid) {
     EXPECT_EQ(*a.grid, *b.grid);

@@ -24,6 +24,8 @@ Import sample() {
       SourceGrid{3, 2, 0, 0, 1000, -1000, {5e5, 10, 0, 5e6, 0, -10}, -9999.0, "Int16", {
                    0b111111
                  }});
+  import.heights.stored = std::vector<std::int16_t>{0, 1, 2, 3, 4, 5};
+  import.heights.shift = 1;
   return import;
 }
 
@@ -64,6 +66,8 @@ TEST(ImportWireTest, AnImportArrivesAsItWas) {
   EXPECT_EQ(there->placements, import.placements);
   EXPECT_EQ(there->driver, import.driver);
   EXPECT_EQ(*there->grid, *import.grid);
+  EXPECT_EQ(there->heights.stored, import.heights.stored);
+  EXPECT_EQ(there->heights.shift, 1);
 }
 
 TEST(ImportWireTest, PiecesOfAnySizeWillDo) {
@@ -80,6 +84,7 @@ TEST(ImportWireTest, PiecesOfAnySizeWillDo) {
 TEST(ImportWireTest, LargeImportsTravelInManyFrames) {
   Import import = sample();
   import.grid = nullptr;
+  import.heights = {};
   import.placements.resize(200'000, {{5, 6}, 7});
   const auto there = received(sent_import(import), limits(200'000, 1));
   ASSERT_TRUE(there);
@@ -97,11 +102,13 @@ TEST(ImportWireTest, ErrorsAndOptionsTravel) {
   options.file_name = "a.csv";
   options.resolution_y = 0.25;
   options.max_pixels = 7;
+  options.heights_only = true;
   const auto there = decode_options(encode_options(options));
   ASSERT_TRUE(there);
   EXPECT_EQ(there->file_name, "a.csv");
   EXPECT_EQ(there->resolution_y, 0.25);
   EXPECT_EQ(there->max_pixels, 7U);
+  EXPECT_TRUE(there->heights_only);
   EXPECT_FALSE(decode_options(encode_options(options).substr(1)));
 }
 
@@ -138,6 +145,16 @@ TEST(ImportWireTest, WhatIsNoTerrainIsRefused) {
   EXPECT_FALSE(with([](Import&, SourceGrid& g) { g.dx = 1 << 29; }));
   EXPECT_FALSE(with([](Import&, SourceGrid& g) { g.geotransform[3] = kNan; }));
   EXPECT_FALSE(with([](Import&, SourceGrid& g) { g.valid.push_back(0); }));
+  EXPECT_FALSE(with([](Import& i, SourceGrid&) { i.heights.stored = std::vector<std::int16_t>(7); }));
+  EXPECT_FALSE(with([](Import& i, SourceGrid&) { i.heights.shift = 1000; }));
+  const auto doubles = [&](double last) {
+    return with([last](Import& i, SourceGrid& g) {
+      g.valid = {0b011111};
+      i.heights.stored = std::vector<double>{1, 2, 3, 4, last, kNan};
+    });
+  };
+  EXPECT_TRUE(doubles(5)) << "the last pixel is no sample";
+  EXPECT_FALSE(doubles(kNan));
 }
 
 TEST(ImportWireTest, DamagedBytesNeverGetPastTheLimits) {
