@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 
-#include "tin/base/check.h"
 #include "tin/frame/ground.h"
 
 namespace tin::query {
@@ -17,9 +16,10 @@ struct Convex {
   std::array<Place, kMost> corners;
   std::size_t size = 0;
 
+  /// Beyond its room a polygon cannot have corners of its own: rounding can make some where it is next to nothing, and those
+  /// are left out.
   void add(Place p) {
-    TIN_DCHECK(size < kMost);
-    corners[size++] = p;
+    if (size < kMost) corners[size++] = p;
   }
   const Place* begin() const { return corners.data(); }
   const Place* end() const { return corners.data() + size; }
