@@ -68,7 +68,7 @@ TEST(ConfigTest, APublicUrlIsOneOfTheWeb) {
 }
 
 TEST(ConfigTest, TheExampleHasEveryKey) {
-  EXPECT_EQ(example().flatten().size(), kNumbers + 6);  // and listen, data_dir, log_level, three of auth
+  EXPECT_EQ(example().flatten().size(), kNumbers + 7);  // and listen, public_url, data_dir, log_level, three of auth
 }
 
 TEST(ConfigTest, ValuesAreTaken) {
