@@ -1,11 +1,13 @@
 // Numbers and boxes in query strings: the whole text, finite, in range, or an error that names the parameter.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "proto/messages.h"
 #include "tin/base/result.h"
 
 namespace proto {
@@ -26,5 +28,10 @@ struct Bbox {
 /// "minx,miny,maxx,maxy" or "minx,miny,minz,maxx,maxy,maxz"; a box may be a point.
 /// Errors: kMalformed, kNotFinite, kInvalidValue (a minimum above its maximum).
 tin::base::Result<Bbox> parse_bbox(std::string_view text, std::string where);
+
+/// Whether a position lies in the box or on its border.
+bool inside(const Position& at, const Bbox& box);
+/// Whether a counter-clockwise triangle and the box have a point in common, seen from above, and their levels too.
+bool touches(const std::array<Position, 3>& corners, const Bbox& box);
 
 }  // namespace proto

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tin/query/void_mask.h"
+
 namespace server::api {
 
 using proto::Bbox;
@@ -17,34 +19,12 @@ Position world(const tin::terrain::Terrain& terrain, tin::mesh::VertexSlot slot)
   return {terrain.frame().x.world(at.x), terrain.frame().y.world(at.y), terrain.z(slot)};
 }
 
-bool inside(const Position& p, const Bbox& box) {
-  const bool level = !box.min_z || (p.z >= *box.min_z && p.z <= *box.max_z);
-  return level && p.x >= box.min_x && p.x <= box.max_x && p.y >= box.min_y && p.y <= box.max_y;
-}
-
-/// Whether the box lies wholly beyond the edge from `a` to `b` of a counter-clockwise triangle.
-bool beyond(const Position& a, const Position& b, const Bbox& box) {
-  const double normal_x = b.y - a.y, normal_y = a.x - b.x;  // points outwards
-  const double nearest_x = normal_x > 0 ? box.min_x : box.max_x,
-               nearest_y = normal_y > 0 ? box.min_y : box.max_y;
-  return normal_x * (nearest_x - a.x) + normal_y * (nearest_y - a.y) > 0;
-}
-
 }  // namespace
 
 std::optional<FeatureKind> feature_kind(std::string_view name) {
   if (name == "vertices") return FeatureKind::kVertices;
   if (name == "triangles") return FeatureKind::kTriangles;
   return std::nullopt;
-}
-
-bool touches(const std::array<Position, 3>& c, const Bbox& box) {
-  const auto [min_x, max_x] = std::minmax({c[0].x, c[1].x, c[2].x});
-  const auto [min_y, max_y] = std::minmax({c[0].y, c[1].y, c[2].y});
-  const auto [min_z, max_z] = std::minmax({c[0].z, c[1].z, c[2].z});
-  if (min_x > box.max_x || max_x < box.min_x || min_y > box.max_y || max_y < box.min_y) return false;
-  if (box.min_z && (min_z > *box.max_z || max_z < *box.min_z)) return false;
-  return !beyond(c[0], c[1], box) && !beyond(c[1], c[2], box) && !beyond(c[2], c[0], box);
 }
 
 void write_feature(proto::formats::GeoJsonWriter& writer, FeatureKind kind, const Feature& feature) {
@@ -56,8 +36,12 @@ void write_feature(proto::formats::GeoJsonWriter& writer, FeatureKind kind, cons
 }
 
 FeatureReader::FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from,
-                             Positions positions, std::optional<Bbox> box)
-    : terrain_(terrain), kind_(kind), positions_(std::move(positions)), box_(box) {
+                             Positions positions, std::optional<Bbox> box, tin::query::Voids voids)
+    : terrain_(terrain),
+      kind_(kind),
+      positions_(std::move(positions)),
+      box_(box),
+      hide_voids_(voids == tin::query::Voids::kKeep && tin::query::has_voids(terrain)) {
   if (kind == FeatureKind::kVertices) {
     next_vertex_ = terrain.ids().first_from(VertexId(from.vertex));
   } else {
@@ -102,6 +86,7 @@ void FeatureReader::collect_triangles() {
       exhausted_ = true;
       return;
     }
+    if (hide_voids_ && tin::query::over_void(terrain_, triangle->slots)) continue;
     feature.ids = triangle->ids;
     for (std::size_t i = 0; i < 3; ++i) feature.corners[i] = world(terrain_, triangle->slots[i]);
     chunk_.push_back(feature);
@@ -135,7 +120,7 @@ void FeatureReader::convert() {
     const auto* ok = &ok_[corners * read++];
     if (std::any_of(ok, ok + corners, [](std::uint8_t fine) { return fine == 0; })) return true;
     if (!box_) return false;
-    return corners == 1 ? !inside(feature.corners[0], *box_) : !touches(feature.corners, *box_);
+    return corners == 1 ? !proto::inside(feature.corners[0], *box_) : !proto::touches(feature.corners, *box_);
   });
 }
 

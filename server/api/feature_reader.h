@@ -12,6 +12,7 @@
 #include "proto/formats/geojson.h"
 #include "proto/messages.h"
 #include "server/api/positions.h"
+#include "tin/query/elevation.h"
 #include "tin/query/order.h"
 #include "tin/terrain/terrain.h"
 
@@ -35,9 +36,10 @@ struct Feature {
 class FeatureReader {
  public:
   /// `box` is in the coordinates that `positions` converts to. Features whose positions have no counterpart
-  /// there are left out.
+  /// there are left out; with kKeep also triangles over voids (tin/query/void_mask.h).
   FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from,
-                Positions positions, std::optional<proto::Bbox> box);
+                Positions positions, std::optional<proto::Bbox> box,
+                tin::query::Voids voids = tin::query::Voids::kFill);
 
   /// The next feature inside or touching the box; nothing after the last.
   std::optional<Feature> next();
@@ -52,6 +54,7 @@ class FeatureReader {
   const FeatureKind kind_;
   Positions positions_;
   const std::optional<proto::Bbox> box_;
+  const bool hide_voids_;
   std::optional<proto::VertexId> next_vertex_;
   std::optional<tin::query::TriangleWalk> walk_;
   bool exhausted_ = false;
@@ -60,9 +63,6 @@ class FeatureReader {
   std::vector<double> x_, y_;
   std::vector<std::uint8_t> ok_;
 };
-
-/// Whether a triangle and a box have a point in common.
-bool touches(const std::array<proto::Position, 3>& corners, const proto::Bbox& box);
 
 void write_feature(proto::formats::GeoJsonWriter& writer, FeatureKind kind, const Feature& feature);
 

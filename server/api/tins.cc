@@ -1,5 +1,6 @@
 // /tins: list, create, show, delete.
 #include "proto/bbox.h"
+#include "server/api/export_formats.h"
 #include "server/api/routes.h"
 #include "server/api/tin_document.h"
 #include "server/api/upload.h"
@@ -40,9 +41,11 @@ proto::TinDocument tin_document(const app::Tin& tin) {
   if (summary.z_range) document.z_range = {summary.z_range->min, summary.z_range->max};
   const std::string self = "/tins/" + tin.id();
   document.links = {{self, "self", std::string(kJson), ""},
-                    {self + "/collections", "data", std::string(kJson), "Vertices and triangles"},
-                    {self + "/export?f=geotiff", "enclosure", "image/tiff; application=geotiff", "DEM"},
-                    {self + "/export?f=geojson", "enclosure", "application/geo+json", "Triangles"}};
+                    {self + "/collections", "data", std::string(kJson), "Vertices and triangles"}};
+  for (const ExportFormat& format : export_formats()) {
+    document.links.push_back({self + "/export?f=" + std::string(format.name), "enclosure",
+                              std::string(format.media_type), std::string(format.title)});
+  }
   return document;
 }
 
@@ -179,8 +182,8 @@ void add_tins(http::Router& router, Context& context) {
   router.add({.method = Method::kGet, .pattern = "/tins", .query = {"limit"}, .handler = on(list)});
   router.add({.method = Method::kPost,
               .pattern = "/tins",
-              .query = {"id", "title", "crs", "resolution", "layer", "z-field", "vertical-unit", "duplicates",
-                        "format"},
+              .query = {"id", "title", "crs", "resolution", "layer", "z-field", "class", "vertical-unit",
+                        "duplicates", "format"},
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});

@@ -1,4 +1,5 @@
-// Points of GeoJSON, GeoPackage and FlatGeobuf files.
+// Points of GeoJSON, GeoPackage, FlatGeobuf and shape files.
+#include <cpl_conv.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "proto/formats/frame_note.h"
 #include "server/gdal/import_internal.h"
 #include "server/gdal/library.h"
 
@@ -21,13 +23,29 @@ using Dataset = std::unique_ptr<GDALDataset, GDALDatasetUniquePtrDeleter>;
 
 const char* driver_name(Format format) {
   if (format == Format::kGeoPackage) return "GPKG";
+  if (format == Format::kShapefile || format == Format::kZippedShapefile) return "ESRI Shapefile";
   return format == Format::kFlatGeobuf ? "FlatGeobuf" : "GeoJSON";
 }
 
+/// While it lives, a shapefile that came without its index is read all the same.
+class IndexMadeAnew {
+ public:
+  IndexMadeAnew() { CPLSetThreadLocalConfigOption("SHAPE_RESTORE_SHX", "YES"); }
+  ~IndexMadeAnew() { CPLSetThreadLocalConfigOption("SHAPE_RESTORE_SHX", nullptr); }
+  IndexMadeAnew(const IndexMadeAnew&) = delete;
+  IndexMadeAnew& operator=(const IndexMadeAnew&) = delete;
+};
+
 Result<Dataset> open(const ImportTask& task, const Complaints& complaints) {
+  std::filesystem::path file = task.workspace.file();
+  if (task.format == Format::kZippedShapefile) {
+    auto unpacked = unpack_shapefile(task);
+    if (!unpacked) return unpacked.error();
+    file = *std::move(unpacked);
+  }
+  const IndexMadeAnew index;
   const char* const drivers[] = {driver_name(task.format), nullptr};
-  Dataset dataset(
-      GDALDataset::Open(task.workspace.file().c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
+  Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
   if (!dataset) {
     return error(Code::kMalformed, "The " + std::string(format_title(task.format)) +
                                        " file cannot be read, or it holds no features" +
@@ -160,7 +178,19 @@ Result<RawPoints> read_vector_points(const ImportTask& task) {
     return error(Code::kMalformed, "The file is damaged, or says what we do not accept" +
                                        complaints.aside(task.workspace.folder()));
   }
-  return RawPoints{reader.take(), *std::move(crs), driver_name(task.format)};
+  RawPoints raw;
+  raw.points = reader.take();
+  raw.crs = *std::move(crs);
+  raw.driver = driver_name(task.format);
+  const char* const note = (*layer)->GetMetadataItem(std::string(proto::formats::kFrameNoteName).c_str());
+  if (note != nullptr) {
+    auto noted = proto::formats::read_frame_note(note);
+    if (!noted) return error(Code::kMalformed, "The note on the lattice is damaged: " + noted.error().message);
+    auto frame = noted_frame(task, *std::move(noted));
+    if (!frame) return frame.error();
+    raw.frame = *std::move(frame);
+  }
+  return raw;
 }
 
 }  // namespace server::gdal

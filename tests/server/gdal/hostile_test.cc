@@ -59,7 +59,10 @@ TEST_F(HostileTest, OnlyTheAllowedDriversExist) {
   prepare_library();
   GDALDriverManager& manager = *GetGDALDriverManager();
   EXPECT_EQ(static_cast<std::size_t>(manager.GetDriverCount()),
-            raster_drivers().size() + vector_drivers().size());
+            raster_drivers().size() + vector_drivers().size() + 1);
+  // It can only write.
+  ASSERT_NE(manager.GetDriverByName("COG"), nullptr);
+  EXPECT_EQ(manager.GetDriverByName("COG")->pfnOpen, nullptr);
   for (const char* name :
        {"VRT", "OGR_VRT", "HTTP", "WMS", "WCS", "WFS", "OAPIF", "DERIVED", "GTI", "CSV", "XYZ"}) {
     EXPECT_EQ(manager.GetDriverByName(name), nullptr) << name;
