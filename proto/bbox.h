@@ -31,7 +31,8 @@ tin::base::Result<Bbox> parse_bbox(std::string_view text, std::string where);
 
 /// Whether a position lies in the box or on its border.
 bool inside(const Position& at, const Bbox& box);
-/// Whether a counter-clockwise triangle and the box have a point in common, seen from above, and their levels too.
+/// Whether a counter-clockwise triangle and the box have a point in common, seen from above, and their levels
+/// too.
 bool touches(const std::array<Position, 3>& corners, const Bbox& box);
 
 }  // namespace proto

@@ -67,8 +67,9 @@ void CityJsonFormat::vertex(std::string& out, const MeshVertex& vertex) {
 }
 
 void CityJsonFormat::between(std::string& out) {
-  out += "\n],\"CityObjects\":{\"terrain\":{\"type\":\"TINRelief\",\"geometry\":"
-         "[{\"type\":\"CompositeSurface\",\"lod\":\"1\",\"boundaries\":[";
+  out +=
+      "\n],\"CityObjects\":{\"terrain\":{\"type\":\"TINRelief\",\"geometry\":"
+      "[{\"type\":\"CompositeSurface\",\"lod\":\"1\",\"boundaries\":[";
   first_ = true;
 }
 

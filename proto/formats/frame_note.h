@@ -1,5 +1,5 @@
-// The frame of a terrain as a line of text for the comments of other formats, so that a file of ours comes home
-// to the same lattice, and thus with the same digest.
+// The frame of a terrain as a line of text for the comments of other formats, so that a file of ours comes
+// home to the same lattice, and thus with the same digest.
 #pragma once
 
 #include <string>

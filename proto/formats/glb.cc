@@ -144,7 +144,8 @@ void GlbFormat::begin(std::string& out, const MeshHead& head) {
   const auto binary =
       static_cast<std::uint32_t>(head.vertices * kPositionBytes + head.triangles * kTriangleBytes);
   const auto length = static_cast<std::uint32_t>(json.size());
-  for (const std::uint32_t word : {kMagic, std::uint32_t{2}, 12 + 8 + length + 8 + binary, length, kJsonChunk})
+  for (const std::uint32_t word :
+       {kMagic, std::uint32_t{2}, 12 + 8 + length + 8 + binary, length, kJsonChunk})
     append_little(out, word);
   out += json;
   append_little(out, binary);
@@ -152,8 +153,7 @@ void GlbFormat::begin(std::string& out, const MeshHead& head) {
 }
 
 void GlbFormat::vertex(std::string& out, const MeshVertex& vertex) {
-  for (const float value : local(vertex.at, origin_))
-    append_little(out, std::bit_cast<std::uint32_t>(value));
+  for (const float value : local(vertex.at, origin_)) append_little(out, std::bit_cast<std::uint32_t>(value));
 }
 
 void GlbFormat::triangle(std::string& out, const MeshTriangle& triangle) {

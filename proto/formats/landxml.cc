@@ -24,11 +24,20 @@ std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : one_line(text)) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -92,9 +101,10 @@ void LandXmlFormat::begin(std::string& out, const MeshHead& head) {
   vertices_ = 0;
   note_ = head.frame ? frame_note(*head.frame) : "";
   // The schema wants a date; a fixed one, since equal revisions give equal bytes.
-  out += "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-         "<LandXML xmlns=\"http://www.landxml.org/schema/LandXML-1.2\" version=\"1.2\" date=\"1970-01-01\" "
-         "time=\"00:00:00\">\n";
+  out +=
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<LandXML xmlns=\"http://www.landxml.org/schema/LandXML-1.2\" version=\"1.2\" date=\"1970-01-01\" "
+      "time=\"00:00:00\">\n";
   out += units_element(head) + coordinate_system(head.crs);
   out += "<Application name=\"Tinsmith\"/>\n<Surfaces>\n<Surface name=\"" + escaped(head.title) +
          "\">\n<Definition surfType=\"TIN\" elevMax=\"";

@@ -1,5 +1,5 @@
-// LandXML 1.2: one surface, Pnts with "northing easting elevation", Faces with three ids; those over voids are
-// marked as invisible (i="1").
+// LandXML 1.2: one surface, Pnts with "northing easting elevation", Faces with three ids; those over voids
+// are marked as invisible (i="1").
 #pragma once
 
 #include "proto/formats/byte_reader.h"
@@ -24,14 +24,14 @@ class LandXmlFormat : public MeshFormat {
   std::string note_;
 };
 
-/// Reads the points of a surface: of the one that is called `surface`, else of the first that has points. Faces
-/// are not kept; points that only invisible faces use are left out, unless the file is ours. Of other versions
-/// than 1.2 the same elements are read, in any namespace.
+/// Reads the points of a surface: of the one that is called `surface`, else of the first that has points.
+/// Faces are not kept; points that only invisible faces use are left out, unless the file is ours. Of other
+/// versions than 1.2 the same elements are read, in any namespace.
 ///
 /// A hostile document gets no further than its first declaration: there are no entities, the elements may be
 /// 64 deep, and a tag at most 1 MiB long.
-/// Errors: kMalformed with the line, kUnsupported (a document type, points that refer to others), kInvalidValue
-/// (no such surface), kNotFinite, kTooLarge, those of `limits.check`.
+/// Errors: kMalformed with the line, kUnsupported (a document type, points that refer to others),
+/// kInvalidValue (no such surface), kNotFinite, kTooLarge, those of `limits.check`.
 tin::base::Result<MeshPoints> read_landxml(ByteReader& bytes, const std::string& surface,
                                            const ReadLimits& limits);
 

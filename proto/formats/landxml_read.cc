@@ -198,9 +198,8 @@ class LandXmlReader {
   void take_crs(const char** attributes) {
     std::string_view code = attribute(attributes, "epsgCode");
     code = code.substr(code.rfind(':') + 1);
-    const bool digits = !code.empty() && code.size() < 10 && std::all_of(code.begin(), code.end(), [](char c) {
-      return c >= '0' && c <= '9';
-    });
+    const bool digits = !code.empty() && code.size() < 10 &&
+                        std::all_of(code.begin(), code.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (digits && code.find_first_not_of('0') != std::string_view::npos) {
       mesh_.crs = "EPSG:" + std::string(code);
     } else {

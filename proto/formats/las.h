@@ -13,11 +13,11 @@ using LasClasses = std::bitset<256>;
 
 /// Its points, and its CRS in one of the two forms that LAS has: WKT, or the tags of a GeoTIFF.
 struct LasFile {
-  MeshPoints mesh;                                    // mesh.crs is the WKT, if there is one
-  std::vector<std::uint16_t> geo_keys;                // tag 34735
-  std::vector<double> geo_doubles;                    // tag 34736
-  std::string geo_ascii;                              // tag 34737
-  std::uint64_t others = 0, withheld = 0;             // points that were left out: not of the classes; withheld
+  MeshPoints mesh;                         // mesh.crs is the WKT, if there is one
+  std::vector<std::uint16_t> geo_keys;     // tag 34735
+  std::vector<double> geo_doubles;         // tag 34736
+  std::string geo_ascii;                   // tag 34737
+  std::uint64_t others = 0, withheld = 0;  // points that were left out: not of the classes; withheld
 };
 
 /// Reads the points of the wanted classes, but for those that are marked as withheld.

@@ -17,7 +17,8 @@ Unsigned read_little(const char* bytes) {
   Unsigned value = 0;
   for (std::size_t i = 0; i < sizeof value; ++i) {
     value = static_cast<Unsigned>(
-        value | static_cast<Unsigned>(static_cast<Unsigned>(static_cast<unsigned char>(bytes[i])) << (8 * i)));
+        value |
+        static_cast<Unsigned>(static_cast<Unsigned>(static_cast<unsigned char>(bytes[i])) << (8 * i)));
   }
   return value;
 }

@@ -22,12 +22,15 @@ std::unique_ptr<MeshFormat> make() {
 constexpr std::array kFormats{
     MeshFormatEntry{"obj", "Wavefront OBJ", ".obj", "model/obj", make<ObjFormat>},
     MeshFormatEntry{"ply", "PLY, binary", ".ply", "application/ply", make<PlyFormat, PlyEncoding::kBinary>},
-    MeshFormatEntry{"ply-ascii", "PLY, text", ".ply", "application/ply", make<PlyFormat, PlyEncoding::kAscii>},
+    MeshFormatEntry{"ply-ascii", "PLY, text", ".ply", "application/ply",
+                    make<PlyFormat, PlyEncoding::kAscii>},
     MeshFormatEntry{"2dm", "SMS 2DM mesh", ".2dm", "text/plain; charset=utf-8", make<Sms2dmFormat>},
     MeshFormatEntry{"landxml", "LandXML surface", ".xml", "application/xml", make<LandXmlFormat>},
     MeshFormatEntry{"glb", "glTF, binary", ".glb", "model/gltf-binary", make<GlbFormat>},
-    MeshFormatEntry{"cityjson", "CityJSON TINRelief", ".city.json", "application/city+json", make<CityJsonFormat>},
-    MeshFormatEntry{"csv", "CSV of vertices", ".csv", "text/csv; charset=utf-8; header=present", make<CsvFormat>},
+    MeshFormatEntry{"cityjson", "CityJSON TINRelief", ".city.json", "application/city+json",
+                    make<CityJsonFormat>},
+    MeshFormatEntry{"csv", "CSV of vertices", ".csv", "text/csv; charset=utf-8; header=present",
+                    make<CsvFormat>},
     MeshFormatEntry{"xyz", "XYZ text of vertices", ".xyz", "text/plain; charset=utf-8", make<XyzFormat>},
 };
 

@@ -10,9 +10,9 @@
 namespace proto::formats {
 
 struct MeshFormatEntry {
-  std::string_view name;        // as in f=obj
-  std::string_view title;       // "Wavefront OBJ"
-  std::string_view suffix;      // ".obj"
+  std::string_view name;    // as in f=obj
+  std::string_view title;   // "Wavefront OBJ"
+  std::string_view suffix;  // ".obj"
   std::string_view media_type;
   std::unique_ptr<MeshFormat> (*make)();
 };

@@ -118,7 +118,8 @@ class PlyReader {
   std::optional<Error> take_element(Words& words) {
     const std::string_view name = words.next();
     const auto rows = to_integer(words.next());
-    if (name.empty() || !rows || *rows < 0) return here(Code::kMalformed, "an element has a name and a count");
+    if (name.empty() || !rows || *rows < 0)
+      return here(Code::kMalformed, "an element has a name and a count");
     if (elements_.size() == kMostElements) return here(Code::kTooLarge, "there are too many elements");
     elements_.push_back({std::string(name), static_cast<std::uint64_t>(*rows), {}});
     return std::nullopt;
@@ -201,8 +202,8 @@ class PlyReader {
 
   std::optional<Error> read_binary_row(const Element& element, std::uint64_t row) {
     const auto ended = [&] {
-      return error(Code::kMalformed, "The PLY file ends within element " + element.name + ", row " +
-                                         std::to_string(row));
+      return error(Code::kMalformed,
+                   "The PLY file ends within element " + element.name + ", row " + std::to_string(row));
     };
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const Property& property = element.properties[i];

@@ -82,8 +82,8 @@ void TerrainMesh::take(std::span<const TriangleView> triangles) {
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const TriangleView& triangle = triangles[i];
-    const bool kept = !request_.box ||
-                      touches({corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}, *request_.box);
+    const bool kept =
+        !request_.box || touches({corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}, *request_.box);
     const bool hidden =
         kept && request_.voids == Voids::kKeep && tin::query::over_void(terrain_, triangle.slots);
     kept_.push_back(kept);
@@ -109,8 +109,7 @@ Result<void> TerrainMesh::choose_vertices() {
     }
     slots.clear();
     positions.clear();
-    for (; next_ && slots.size() < kChunk;
-         next_ = terrain_.ids().first_from(VertexId(next_->value() + 1))) {
+    for (; next_ && slots.size() < kChunk; next_ = terrain_.ids().first_from(VertexId(next_->value() + 1))) {
       slots.push_back(*terrain_.slot_of(*next_));
       positions.push_back(own(slots.back()));
     }
@@ -124,8 +123,7 @@ Result<void> TerrainMesh::choose_vertices() {
       number = count++;
       const Position& at = positions[i];
       head_.low = {std::min(head_.low.x, at.x), std::min(head_.low.y, at.y), std::min(head_.low.z, at.z)};
-      head_.high = {std::max(head_.high.x, at.x), std::max(head_.high.y, at.y),
-                    std::max(head_.high.z, at.z)};
+      head_.high = {std::max(head_.high.x, at.x), std::max(head_.high.y, at.y), std::max(head_.high.z, at.z)};
     }
   }
   head_.vertices = count;

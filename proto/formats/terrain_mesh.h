@@ -18,7 +18,8 @@ namespace proto::formats {
 /// What of a terrain becomes a mesh, and in which coordinates.
 struct MeshRequest {
   /// Converts x and y in place; ok[i] becomes 0 where there is no counterpart. Returns whether all have.
-  using Convert = std::function<bool(std::span<double> x, std::span<double> y, std::vector<std::uint8_t>& ok)>;
+  using Convert =
+      std::function<bool(std::span<double> x, std::span<double> y, std::vector<std::uint8_t>& ok)>;
 
   std::string title{};
   Convert convert{};        // none: the terrain's own coordinates
@@ -32,9 +33,9 @@ struct MeshRequest {
   std::function<tin::base::Result<void>()> check{};
 };
 
-/// Vertices by ascending id and triangles in the order of TriangleWalk: the same for the same revision, always.
-/// Borrows the terrain, which must not change. Memory: 4 bytes per vertex, and a quarter of a byte per triangle
-/// where there is a box or a void. One thread.
+/// Vertices by ascending id and triangles in the order of TriangleWalk: the same for the same revision,
+/// always. Borrows the terrain, which must not change. Memory: 4 bytes per vertex, and a quarter of a byte
+/// per triangle where there is a box or a void. One thread.
 class TerrainMesh : public MeshSource {
  public:
   /// Cost: a pass over the vertices; with a box or voids also over the triangles.

@@ -62,8 +62,8 @@ tin::base::Error at_line(Code code, const std::string& what, std::uint64_t line)
 
 Result<void> add_point(MeshPoints& mesh, const Position& at, const ReadLimits& limits) {
   if (mesh.points.size() >= limits.points) {
-    return error(Code::kTooLarge, "The file holds more than " + std::to_string(limits.points) +
-                                      " elevations, the limit here");
+    return error(Code::kTooLarge,
+                 "The file holds more than " + std::to_string(limits.points) + " elevations, the limit here");
   }
   mesh.points.push_back(at);
   return {};

@@ -83,14 +83,17 @@ Result<Response> export_tin(Context& context, const Request& request) {
     return error(Code::kInvalidValue, "The formats are " + export_format_names() + ".", "query:f");
   }
   if (auto fine = check_format_parameters(request, *format); !fine) return fine.error();
-  ExportTask task{context, **tin,   (*tin)->version(),
-                  *wanted, *kind,   *format,
+  ExportTask task{context,
+                  **tin,
+                  (*tin)->version(),
+                  *wanted,
+                  *kind,
+                  *format,
                   Patience(request, context.config.limits.export_seconds)};
   Response response;
   response.headers = {
       {"Content-Type", std::string(format->media_type)},
-      {"Content-Disposition",
-       "attachment; filename=\"" + (*tin)->id() + std::string(format->suffix) + "\""},
+      {"Content-Disposition", "attachment; filename=\"" + (*tin)->id() + std::string(format->suffix) + "\""},
       {"ETag", entity_tag(**tin, task.version.revision, request)}};
   auto body = format->make(task);
   if (!body) return body.error();

@@ -13,11 +13,12 @@ constexpr std::array kOwn{
     ExportFormat{"geotiff", "GeoTIFF", ".tif", "image/tiff; application=geotiff", ExportFamily::kRaster,
                  export_geotiff},
     ExportFormat{"cog", "Cloud-optimised GeoTIFF", ".tif",
-                 "image/tiff; application=geotiff; profile=cloud-optimized", ExportFamily::kRaster, export_cog},
+                 "image/tiff; application=geotiff; profile=cloud-optimized", ExportFamily::kRaster,
+                 export_cog},
     ExportFormat{"aaigrid", "Esri ASCII grid", ".asc", "text/plain; charset=utf-8", ExportFamily::kRaster,
                  export_ascii_grid},
-    ExportFormat{"geojson", "GeoJSON", ".geojson", proto::formats::kGeoJsonMediaType,
-                 ExportFamily::kFeatures, export_geojson},
+    ExportFormat{"geojson", "GeoJSON", ".geojson", proto::formats::kGeoJsonMediaType, ExportFamily::kFeatures,
+                 export_geojson},
     ExportFormat{"gpkg", "GeoPackage", ".gpkg", "application/geopackage+sqlite3", ExportFamily::kLayers,
                  export_geopackage},
     ExportFormat{"flatgeobuf", "FlatGeobuf", ".fgb", "application/flatgeobuf", ExportFamily::kFeatures,
@@ -42,8 +43,8 @@ std::span<const ExportFormat> export_formats() {
 
 const ExportFormat* find_export_format(std::string_view name) {
   const auto all = export_formats();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [name](const ExportFormat& format) { return format.name == name; });
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [name](const ExportFormat& format) { return format.name == name; });
   return found == all.end() ? nullptr : &*found;
 }
 

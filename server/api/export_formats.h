@@ -1,5 +1,5 @@
-// The formats of exports, in one table: from it come the answers, the error messages and the links; the enum in
-// openapi.json is held against it by a test.
+// The formats of exports, in one table: from it come the answers, the error messages and the links; the enum
+// in openapi.json is held against it by a test.
 #pragma once
 
 #include <span>

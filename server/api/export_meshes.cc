@@ -35,8 +35,7 @@ Result<MeshRequest> mesh_request(const ExportTask& task) {
   MeshRequest request;
   request.title = task.tin.title().empty() ? task.tin.id() : task.tin.title();
   request.box = task.wanted.box;
-  request.voids =
-      task.wanted.voids == tin::query::Voids::kFill ? proto::Voids::kFill : proto::Voids::kKeep;
+  request.voids = task.wanted.voids == tin::query::Voids::kFill ? proto::Voids::kFill : proto::Voids::kKeep;
   request.check = [patience = task.patience] { return patience.check(); };
   request.crs = task.wanted.crs.empty() ? frame.crs : task.wanted.crs;
   if (!request.crs.empty()) {

@@ -13,15 +13,16 @@ using Write = Result<void> (*)(const std::filesystem::path& out, const gdal::Ras
                                const gdal::RowSource& rows);
 
 Result<http::Body> raster(ExportTask& task, Write write) {
-  return file_body(task, task.format.suffix, [&task, write](const std::filesystem::path& file) -> Result<void> {
-    auto grid = ExportGrid::plan(task.terrain(), task.wanted);
-    if (!grid) return grid.error();
-    const auto row_source = [&](std::int64_t row, std::span<double> values) -> Result<void> {
-      grid->sample_row(row, values);
-      return task.patience.check();
-    };
-    return write(file, grid->spec(), row_source);
-  });
+  return file_body(task, task.format.suffix,
+                   [&task, write](const std::filesystem::path& file) -> Result<void> {
+                     auto grid = ExportGrid::plan(task.terrain(), task.wanted);
+                     if (!grid) return grid.error();
+                     const auto row_source = [&](std::int64_t row, std::span<double> values) -> Result<void> {
+                       grid->sample_row(row, values);
+                       return task.patience.check();
+                     };
+                     return write(file, grid->spec(), row_source);
+                   });
 }
 
 }  // namespace

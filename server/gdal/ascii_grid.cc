@@ -73,7 +73,8 @@ std::optional<Error> write(const std::filesystem::path& out, const RasterSpec& s
 
 }  // namespace
 
-Result<void> write_ascii_grid(const std::filesystem::path& out, const RasterSpec& spec, const RowSource& rows) {
+Result<void> write_ascii_grid(const std::filesystem::path& out, const RasterSpec& spec,
+                              const RowSource& rows) {
   const auto& g = spec.geotransform;
   if (!(g[1] > 0) || !(g[5] < 0) || g[2] != 0 || g[4] != 0) {
     return error(Code::kInvalidValue,

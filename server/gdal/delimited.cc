@@ -256,11 +256,7 @@ Result<RawPoints> read_delimited_points(const ImportTask& task) {
   raw.crs = task.asked_crs;
   raw.driver = "CSV";
   if (parser.note()) {
-    auto noted = proto::formats::read_frame_note(*parser.note());
-    if (!noted) return error(Code::kMalformed, "The note on the lattice is damaged: " + noted.error().message);
-    auto frame = noted_frame(task, *std::move(noted));
-    if (!frame) return frame.error();
-    raw.frame = *std::move(frame);
+    if (auto taken = take_note(raw, *parser.note()); !taken) return taken.error();
   }
   if (!raw.crs && parser.degrees()) {
     auto crs = read_crs("OGC:CRS84");

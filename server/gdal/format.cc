@@ -239,7 +239,8 @@ std::string all_titles() {
 
 /// Lines that begin with "v " come first, after comments and other keywords of OBJ.
 bool is_obj(std::string_view text) {
-  constexpr std::array<std::string_view, 8> kBefore{"#", "mtllib ", "o ", "g ", "s ", "vt ", "vn ", "usemtl "};
+  constexpr std::array<std::string_view, 8> kBefore{"#",  "mtllib ", "o ",  "g ",
+                                                    "s ", "vt ",     "vn ", "usemtl "};
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
     if (line.starts_with("v ") || line.starts_with("v\t")) return true;

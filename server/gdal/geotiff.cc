@@ -209,8 +209,8 @@ std::optional<Error> copy_as_cog(const std::filesystem::path& from, const std::f
   Dataset source(GDALDataset::Open(from.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers));
   Dataset copy;
   if (source) {
-    copy.reset(GetGDALDriverManager()->GetDriverByName("COG")->CreateCopy(
-        out.c_str(), source.get(), FALSE, options.List(), nullptr, nullptr));
+    copy.reset(GetGDALDriverManager()->GetDriverByName("COG")->CreateCopy(out.c_str(), source.get(), FALSE,
+                                                                          options.List(), nullptr, nullptr));
   }
   const bool made = copy != nullptr;
   copy.reset();

@@ -24,8 +24,8 @@ namespace server::gdal {
 struct ImportOptions {
   std::string file_name;     // helps to recognise the format, and places an HGT; never opened
   std::string content_type;  // helps to recognise the format
-  /// Insists on a format: geotiff, hgt, aaigrid, usgsdem, dted, gsag, gsbg, gs7bg, bt, csv, xyz, geojson, gpkg,
-  /// fgb, shp, zip, las, obj, ply, 2dm or landxml.
+  /// Insists on a format: geotiff, hgt, aaigrid, usgsdem, dted, gsag, gsbg, gs7bg, bt, csv, xyz, geojson,
+  /// gpkg, fgb, shp, zip, las, obj, ply, 2dm or landxml.
   std::string format;
   std::string crs;          // replaces or supplies the file's CRS, in any form that read_crs() takes
   double resolution_x = 0;  // lattice steps in CRS units; 0: about 1 mm on the ground
@@ -54,10 +54,10 @@ struct Import {
 /// Rasters: band 1, pixel centres, scale and offset applied; pixels that are nodata, masked, not finite or
 /// larger than 1e30 (undeclared fill values) are void. Rows may run north to south or south to north.
 /// Points: columns or fields by their usual names, else the first three numeric columns; GeoJSON is CRS84
-/// unless it says otherwise, and columns called longitude and latitude are too. A shapefile may come alone (its
-/// .shp, with heights in it and without a CRS) or in a ZIP archive that holds it with its companions.
-/// Meshes and surfaces: their vertices; the triangulation is always the terrain's own. A file that was exported
-/// by us notes its lattice, and is put on it again.
+/// unless it says otherwise, and columns called longitude and latitude are too. A shapefile may come alone
+/// (its .shp, with heights in it and without a CRS) or in a ZIP archive that holds it with its companions.
+/// Meshes and surfaces: their vertices; the triangulation is always the terrain's own. A file that was
+/// exported by us notes its lattice, and is put on it again.
 ///
 /// Errors: kInvalidValue (empty file or raster, no valid sample, no georeference, an HGT without its name, no
 /// heights, unknown layer or field), kUnsupported (format, CRS, rotated raster, complex pixels), kMalformed

@@ -38,7 +38,7 @@ struct RawPoints {
   std::optional<CrsInfo> crs;              // the client's, else the file's
   std::optional<VerticalUnit> vertical;    // of the file
   double unit_m = 1;                       // metres per unit of x and y, where there is no CRS
-  std::optional<tin::frame::Frame> frame;  // of the terrain that the file was written from
+  std::optional<tin::frame::Frame> noted;  // the lattice that a file of ours notes; not to be trusted
   std::string driver;
 };
 
@@ -66,17 +66,17 @@ tin::base::Result<RawPoints> read_delimited_points(const ImportTask& task);
 tin::base::Result<RawPoints> read_mesh_points(const ImportTask& task);
 tin::base::Result<RawPoints> read_las_points(const ImportTask& task);
 
-/// Unpacks the one shapefile of the archive, with its companions, into the workspace, under names of ours; its
-/// .shp. Errors: kMalformed, kUnsupported (no shapefile in it), kInvalidValue (several), kTooLarge, kStorage.
+/// Unpacks the one shapefile of the archive, with its companions, into the workspace, under names of ours;
+/// its .shp. Errors: kMalformed, kUnsupported (no shapefile in it), kInvalidValue (several), kTooLarge,
+/// kStorage.
 tin::base::Result<std::filesystem::path> unpack_shapefile(const ImportTask& task);
 
-/// What becomes of the frame that a file of ours notes: nothing if the client asks for another CRS or
-/// resolution. Errors: kInvalidValue when no terrain can have it; as read_crs().
-tin::base::Result<std::optional<tin::frame::Frame>> noted_frame(const ImportTask& task,
-                                                                tin::frame::Frame noted);
+/// Takes the note on the lattice that a file may have in a comment. Errors: kMalformed.
+tin::base::Result<void> take_note(RawPoints& raw, std::string_view note);
 
-/// Uses the frame that the file notes, if all points are on its lattice; else fits a frame to the points and snaps them to it. Errors: kInvalidValue when there are none; as
-/// fit_points().
+/// Puts points on the lattice that the file notes, unless the client asks for another CRS or resolution, or
+/// not all are on it; else fits a frame to the points and snaps them to it. Errors: kInvalidValue when there
+/// are none; as fit_points().
 tin::base::Result<Import> place_points(const ImportTask& task, RawPoints raw);
 
 }  // namespace server::gdal

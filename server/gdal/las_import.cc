@@ -39,9 +39,12 @@ std::string tiff_of(const LasFile& las) {
   for (const std::uint16_t key : las.geo_keys) append_little(keys, key);
   for (const double value : las.geo_doubles) append_little(doubles, std::bit_cast<std::uint64_t>(value));
   append_little(place, std::uint32_t{8});  // of the pixel, behind the header
-  std::vector<Tag> tags{number(256, 1), number(257, 1), number(258, 8), number(259, 1), number(262, 1),
-                        Tag{273, kLong, 1, place}, number(277, 1), number(278, 1), number(279, 1),
-                        Tag{34735, kShort, static_cast<std::uint32_t>(las.geo_keys.size()), keys}};
+  std::vector<Tag> tags{
+      number(256, 1), number(257, 1),
+      number(258, 8), number(259, 1),
+      number(262, 1), Tag{273, kLong, 1, place},
+      number(277, 1), number(278, 1),
+      number(279, 1), Tag{34735, kShort, static_cast<std::uint32_t>(las.geo_keys.size()), keys}};
   if (!doubles.empty())
     tags.push_back({34736, kDouble, static_cast<std::uint32_t>(las.geo_doubles.size()), doubles});
   if (!las.geo_ascii.empty())
@@ -81,8 +84,8 @@ Result<std::optional<CrsInfo>> crs_of_tags(const ImportTask& task, const LasFile
   const char* const drivers[] = {"GTiff", nullptr};
   const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers));
   if (!dataset) {
-    return error(Code::kMalformed,
-                 "The GeoTIFF tags of the LAS file cannot be read" + complaints.aside(task.workspace.folder()));
+    return error(Code::kMalformed, "The GeoTIFF tags of the LAS file cannot be read" +
+                                       complaints.aside(task.workspace.folder()));
   }
   return effective_crs(task, dataset->GetSpatialRef());
 }

@@ -68,11 +68,7 @@ Result<RawPoints> read_mesh_points(const ImportTask& task) {
   raw.crs = *std::move(crs);
   if (mesh->vertical) raw.vertical = VerticalUnit{mesh->vertical->name, mesh->vertical->metres};
   if (!raw.crs && mesh->horizontal) raw.unit_m = mesh->horizontal->metres;
-  if (mesh->frame) {
-    auto frame = noted_frame(task, *std::move(mesh->frame));
-    if (!frame) return frame.error();
-    raw.frame = *std::move(frame);
-  }
+  raw.noted = std::move(mesh->frame);
   raw.points.reserve(mesh->points.size());
   for (const proto::Position& at : mesh->points) raw.points.push_back({at.x, at.y, at.z});
   return raw;

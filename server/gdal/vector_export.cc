@@ -119,8 +119,8 @@ Result<VectorFile> VectorFile::create(const std::filesystem::path& out, const Ve
   const char* const driver = spec.driver == VectorDriver::kGeoPackage ? "GPKG" : "FlatGeobuf";
   CPLStringList options;
   if (spec.driver == VectorDriver::kGeoPackage) options.SetNameValue("VERSION", "1.3");
-  impl->dataset.reset(GetGDALDriverManager()->GetDriverByName(driver)->Create(out.c_str(), 0, 0, 0, GDT_Unknown,
-                                                                              options.List()));
+  impl->dataset.reset(GetGDALDriverManager()->GetDriverByName(driver)->Create(out.c_str(), 0, 0, 0,
+                                                                              GDT_Unknown, options.List()));
   if (!impl->dataset) return impl->failed();
   return VectorFile(std::move(impl));
 }
@@ -136,7 +136,7 @@ Result<void> VectorFile::begin(VectorLayer kind) {
   impl.layer = impl.dataset->CreateLayer(name_of(kind), impl.crs.get(), type_of(kind), options.List());
   if (impl.layer == nullptr) return impl.failed();
   const auto field = [&impl](const char* name, OGRFieldType type) {
-    const OGRFieldDefn definition(name, type);
+    OGRFieldDefn definition(name, type);
     return impl.layer->CreateField(&definition) == OGRERR_NONE;
   };
   bool good = true;

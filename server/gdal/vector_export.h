@@ -25,9 +25,9 @@ struct VectorSpec {
   std::string note;  // kept as metadata of the layers, where the format has some: the terrain's lattice
 };
 
-/// A file under construction; a FlatGeobuf has one layer only. Features go to the layer begun last, as they are
-/// asked for; memory does not grow with them, but for 50 bytes each in a FlatGeobuf, whose index is made at
-/// the end. Equal input gives equal bytes. One thread.
+/// A file under construction; a FlatGeobuf has one layer only. Features go to the layer begun last, as they
+/// are asked for; memory does not grow with them, but for 50 bytes each in a FlatGeobuf, whose index is made
+/// at the end. Equal input gives equal bytes. One thread.
 ///
 /// Errors: kStorage everywhere; as read_crs() from create(). Whoever gets one removes the file.
 class VectorFile {

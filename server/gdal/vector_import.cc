@@ -184,11 +184,7 @@ Result<RawPoints> read_vector_points(const ImportTask& task) {
   raw.driver = driver_name(task.format);
   const char* const note = (*layer)->GetMetadataItem(std::string(proto::formats::kFrameNoteName).c_str());
   if (note != nullptr) {
-    auto noted = proto::formats::read_frame_note(note);
-    if (!noted) return error(Code::kMalformed, "The note on the lattice is damaged: " + noted.error().message);
-    auto frame = noted_frame(task, *std::move(noted));
-    if (!frame) return frame.error();
-    raw.frame = *std::move(frame);
+    if (auto taken = take_note(raw, note); !taken) return taken.error();
   }
   return raw;
 }

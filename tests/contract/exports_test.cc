@@ -19,7 +19,8 @@ class ExportsTest : public testing::Test {
  protected:
   ExportsTest() {
     server_.post_json(
-        "/tins", R"({"id":"hill","crs":"EPSG:32632","title":"A hill","vertices":[[0,0,1],[100,0,2],[0,100,3],[100,100,4],[50,40,9]]})");
+        "/tins",
+        R"({"id":"hill","crs":"EPSG:32632","title":"A hill","vertices":[[0,0,1],[100,0,2],[0,100,3],[100,100,4],[50,40,9]]})");
   }
   TestServer server_;
 };
@@ -51,7 +52,8 @@ TEST_F(ExportsTest, ATinLinksToEachFormat) {
   const Json links = Json::parse(server_.get("/tins/hill").body).at("links");
   for (const auto& format : export_formats()) {
     const std::string href = "/tins/hill/export?f=" + std::string(format.name);
-    const auto found = std::find_if(links.begin(), links.end(), [&](const Json& link) { return link.at("href") == href; });
+    const auto found =
+        std::find_if(links.begin(), links.end(), [&](const Json& link) { return link.at("href") == href; });
     ASSERT_NE(found, links.end()) << href;
     EXPECT_EQ(found->at("type"), format.media_type);
   }
@@ -99,7 +101,8 @@ TEST_F(ExportsTest, MeshesComeHomeWithTheSameDigest) {
   for (const char* format : {"obj", "ply", "ply-ascii", "2dm", "landxml", "xyz", "gpkg"}) {
     SCOPED_TRACE(format);
     const std::string file = server_.get("/tins/hill/export?f=" + std::string(format)).body;
-    const RawAnswer made = server_.ask({"POST", "/tins?id=home-" + std::string(format), "application/octet-stream", file});
+    const RawAnswer made =
+        server_.ask({"POST", "/tins?id=home-" + std::string(format), "application/octet-stream", file});
     ASSERT_EQ(made.status, 201) << made.body;
     const Json home = Json::parse(made.body);
     EXPECT_EQ(home.at("digest"), hill.at("digest"));

@@ -19,7 +19,8 @@ bool in_void(const SourceGrid& grid, Point p) {
   return cell && !grid.is_valid(cell->column, cell->row);
 }
 
-/// First and last of `count` lines at `start + i * step` within [low, high]; the last may lie before the first.
+/// First and last of `count` lines at `start + i * step` within [low, high]; the last may lie before the
+/// first.
 struct Span {
   std::int32_t first, last;
 };

@@ -1,7 +1,8 @@
+#include "proto/formats/glb.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "proto/formats/glb.h"
 #include "tests/proto/formats/parsed.h"
 #include "tests/proto/formats/support.h"
 
@@ -9,8 +10,8 @@ namespace tests::formats {
 namespace {
 
 nlohmann::json document(const std::string& glb) {
-  return nlohmann::json::parse(glb.substr(20, static_cast<unsigned char>(glb[12]) +
-                                                  256U * static_cast<unsigned char>(glb[13])));
+  return nlohmann::json::parse(
+      glb.substr(20, static_cast<unsigned char>(glb[12]) + 256U * static_cast<unsigned char>(glb[13])));
 }
 
 TEST(GlbTest, HoldsEveryVertexWithinFloat32AndEveryTriangle) {
@@ -44,8 +45,10 @@ TEST(GlbTest, DegreesBecomeMetresAroundTheMiddle) {
   const auto vertices = terrain.vertices_by_id();
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     // Lengths of a degree at latitude 46 on WGS84, from its series.
-    EXPECT_NEAR(parsed.vertices[i][0], (frame.x.world(vertices[i].at.x) - origin[0].get<double>()) * 77465, 0.05);
-    EXPECT_NEAR(parsed.vertices[i][1], (frame.y.world(vertices[i].at.y) - origin[1].get<double>()) * 111151, 0.05);
+    EXPECT_NEAR(parsed.vertices[i][0], (frame.x.world(vertices[i].at.x) - origin[0].get<double>()) * 77465,
+                0.05);
+    EXPECT_NEAR(parsed.vertices[i][1], (frame.y.world(vertices[i].at.y) - origin[1].get<double>()) * 111151,
+                0.05);
   }
   EXPECT_EQ(document(glb).at("nodes").at(0).at("extras").at("crs"), "EPSG:4326");
 }

@@ -47,7 +47,8 @@ TEST(HostileObjTest, IsRefusedWithTheLine) {
 }
 
 TEST(HostilePlyTest, AHeaderIsReadWithSuspicion) {
-  const std::string begin = "ply\nformat ascii 1.0\n", axes = "property float x\nproperty float y\nproperty float z\n";
+  const std::string begin = "ply\nformat ascii 1.0\n",
+                    axes = "property float x\nproperty float y\nproperty float z\n";
   EXPECT_EQ(refused(read_ply, "plyx\n").code, Code::kMalformed);
   EXPECT_EQ(refused(read_ply, "ply\nformat ascii 2.0\n").code, Code::kUnsupported);
   EXPECT_EQ(refused(read_ply, "ply\nformat utf 1.0\n").code, Code::kUnsupported);
@@ -56,13 +57,18 @@ TEST(HostilePlyTest, AHeaderIsReadWithSuspicion) {
   EXPECT_EQ(refused(read_ply, begin + "property float x\nend_header\n").where, "line 3");
   EXPECT_EQ(refused(read_ply, begin + "element vertex -1\n").code, Code::kMalformed);
   EXPECT_EQ(refused(read_ply, begin + "element vertex 1e9\n").code, Code::kMalformed);
-  EXPECT_EQ(refused(read_ply, begin + "element vertex 1\nproperty list float int x\n").code, Code::kMalformed);
+  EXPECT_EQ(refused(read_ply, begin + "element vertex 1\nproperty list float int x\n").code,
+            Code::kMalformed);
   EXPECT_EQ(refused(read_ply, begin + "element vertex 1\nproperty half x\n").code, Code::kMalformed);
   EXPECT_EQ(refused(read_ply, begin + "element face 1\nend_header\n").code, Code::kInvalidValue);
-  EXPECT_EQ(refused(read_ply, begin + "element vertex 1\nproperty float x\nend_header\n1\n").code, Code::kInvalidValue);
-  EXPECT_EQ(refused(read_ply, begin + "element vertex 9223372036854775807\n" + axes + "end_header\n").code, Code::kTooLarge);
-  EXPECT_EQ(refused(read_ply, begin + "element vertex 2\n" + axes + "end_header\n1 2 3\n").code, Code::kMalformed);
-  EXPECT_EQ(refused(read_ply, begin + "element vertex 1\n" + axes + "end_header\n1 2 nan\n").code, Code::kNotFinite);
+  EXPECT_EQ(refused(read_ply, begin + "element vertex 1\nproperty float x\nend_header\n1\n").code,
+            Code::kInvalidValue);
+  EXPECT_EQ(refused(read_ply, begin + "element vertex 9223372036854775807\n" + axes + "end_header\n").code,
+            Code::kTooLarge);
+  EXPECT_EQ(refused(read_ply, begin + "element vertex 2\n" + axes + "end_header\n1 2 3\n").code,
+            Code::kMalformed);
+  EXPECT_EQ(refused(read_ply, begin + "element vertex 1\n" + axes + "end_header\n1 2 nan\n").code,
+            Code::kNotFinite);
   std::string many = begin;
   for (int i = 0; i < 100; ++i) many += "element e" + std::to_string(i) + " 0\n";
   EXPECT_EQ(refused(read_ply, many).code, Code::kTooLarge);
@@ -77,12 +83,18 @@ TEST(HostilePlyTest, AHeaderIsReadWithSuspicion) {
 TEST(HostilePlyTest, BinaryCountsAreNotBelieved) {
   const std::string axes = "property float x\nproperty float y\nproperty float z\nend_header\n";
   const std::string begin = "ply\nformat binary_little_endian 1.0\n";
-  EXPECT_EQ(refused(read_ply, begin + "element vertex 49000000\n" + axes + "123456789012").code, Code::kMalformed);
-  // A list of four thousand million items that are not there, and rows that take no byte.
-  EXPECT_EQ(refused(read_ply, begin + "element face 1\nproperty list uint double i\nelement vertex 1\n" + axes + "\xFF\xFF\xFF\xFF").code,
+  EXPECT_EQ(refused(read_ply, begin + "element vertex 49000000\n" + axes + "123456789012").code,
             Code::kMalformed);
-  EXPECT_EQ(refused(read_ply, begin + "element face 9000000000000000000\nelement vertex 1\n" + axes).code, Code::kMalformed);
-  EXPECT_EQ(refused(read_ply, begin + "element face 1\nproperty list char double i\nelement vertex 1\n" + axes + "\xFF").code,
+  // A list of four thousand million items that are not there, and rows that take no byte.
+  EXPECT_EQ(refused(read_ply, begin + "element face 1\nproperty list uint double i\nelement vertex 1\n" +
+                                  axes + "\xFF\xFF\xFF\xFF")
+                .code,
+            Code::kMalformed);
+  EXPECT_EQ(refused(read_ply, begin + "element face 9000000000000000000\nelement vertex 1\n" + axes).code,
+            Code::kMalformed);
+  EXPECT_EQ(refused(read_ply,
+                    begin + "element face 1\nproperty list char double i\nelement vertex 1\n" + axes + "\xFF")
+                .code,
             Code::kMalformed);
 }
 
@@ -100,9 +112,11 @@ std::string in_surface(const std::string& inner) {
 }
 
 TEST(HostileLandXmlTest, EntitiesAndDocumentTypesAreNotRead) {
-  const std::string bomb = R"(<?xml version="1.0"?><!DOCTYPE lolz [<!ENTITY lol "lol"><!ENTITY lol2 "&lol;&lol;">]>)";
+  const std::string bomb =
+      R"(<?xml version="1.0"?><!DOCTYPE lolz [<!ENTITY lol "lol"><!ENTITY lol2 "&lol;&lol;">]>)";
   EXPECT_EQ(refused(read_any_landxml, bomb + in_surface("<P>&lol2;</P>")).code, Code::kUnsupported);
-  EXPECT_EQ(refused(read_any_landxml, "<!DOCTYPE x SYSTEM \"file:///etc/passwd\"><LandXML/>").code, Code::kUnsupported);
+  EXPECT_EQ(refused(read_any_landxml, "<!DOCTYPE x SYSTEM \"file:///etc/passwd\"><LandXML/>").code,
+            Code::kUnsupported);
   EXPECT_EQ(refused(read_any_landxml, in_surface("<P>&lol;</P>")).code, Code::kMalformed);
 }
 
@@ -110,8 +124,10 @@ TEST(HostileLandXmlTest, DepthAndLengthAreBounded) {
   std::string deep = "<LandXML>";
   for (int i = 0; i < 100; ++i) deep += "<a>";
   EXPECT_EQ(refused(read_any_landxml, deep).code, Code::kTooLarge);
-  EXPECT_EQ(refused(read_any_landxml, in_surface("<P>1 2 " + std::string(5000, '3') + "</P>")).code, Code::kTooLarge);
-  EXPECT_EQ(refused(read_any_landxml, "<LandXML a=\"" + std::string(3 << 20, 'x') + "\"/>").code, Code::kTooLarge);
+  EXPECT_EQ(refused(read_any_landxml, in_surface("<P>1 2 " + std::string(5000, '3') + "</P>")).code,
+            Code::kTooLarge);
+  EXPECT_EQ(refused(read_any_landxml, "<LandXML a=\"" + std::string(3 << 20, 'x') + "\"/>").code,
+            Code::kTooLarge);
 }
 
 TEST(HostileLandXmlTest, WhatIsNoPointIsRefusedWithItsLine) {
@@ -121,19 +137,24 @@ TEST(HostileLandXmlTest, WhatIsNoPointIsRefusedWithItsLine) {
   EXPECT_EQ(refused(read_any_landxml, "<html/>").code, Code::kMalformed);
   EXPECT_EQ(refused(read_any_landxml, "<LandXML>").code, Code::kMalformed);
   EXPECT_EQ(refused(read_any_landxml, "").code, Code::kMalformed);
-  EXPECT_EQ(refused(read_any_landxml, "<?xml version=\"1.0\" encoding=\"klingon\"?><LandXML/>").code, Code::kMalformed);
+  EXPECT_EQ(refused(read_any_landxml, "<?xml version=\"1.0\" encoding=\"klingon\"?><LandXML/>").code,
+            Code::kMalformed);
 }
 
 TEST(HostileMeshTest, PointsAreCountedAndReadingCanBeEnded) {
   const Terrain terrain = random_terrain(20000);
-  const std::vector<std::pair<const char*, Read>> all{
-      {"obj", read_obj}, {"ply", read_ply}, {"ply-ascii", read_ply}, {"2dm", read_2dm}, {"landxml", read_any_landxml}};
+  const std::vector<std::pair<const char*, Read>> all{{"obj", read_obj},
+                                                      {"ply", read_ply},
+                                                      {"ply-ascii", read_ply},
+                                                      {"2dm", read_2dm},
+                                                      {"landxml", read_any_landxml}};
   for (const auto& [format, read] : all) {
     SCOPED_TRACE(format);
     const std::string bytes = written(terrain, format);
     MemoryReader enough(bytes);
     EXPECT_TRUE(read(enough, {.points = terrain.vertex_count(), .check = {}}).ok());
-    EXPECT_EQ(refused(read, bytes, {.points = terrain.vertex_count() - 1, .check = {}}).code, Code::kTooLarge);
+    EXPECT_EQ(refused(read, bytes, {.points = terrain.vertex_count() - 1, .check = {}}).code,
+              Code::kTooLarge);
     const auto stop = [](std::uint64_t) { return Result<void>(tin::base::error(Code::kCancelled, "")); };
     EXPECT_EQ(refused(read, bytes, {.points = 1000000, .check = stop}).code, Code::kCancelled);
   }
@@ -143,8 +164,11 @@ TEST(HostileMeshTest, PointsAreCountedAndReadingCanBeEnded) {
 TEST(HostileMeshTest, DamageIsNeverWorseThanAnError) {
   const Terrain terrain = random_terrain(60);
   std::mt19937 random(7);
-  const std::vector<std::pair<const char*, Read>> all{
-      {"obj", read_obj}, {"ply", read_ply}, {"ply-ascii", read_ply}, {"2dm", read_2dm}, {"landxml", read_any_landxml}};
+  const std::vector<std::pair<const char*, Read>> all{{"obj", read_obj},
+                                                      {"ply", read_ply},
+                                                      {"ply-ascii", read_ply},
+                                                      {"2dm", read_2dm},
+                                                      {"landxml", read_any_landxml}};
   for (const auto& [format, read] : all) {
     const std::string whole = written(terrain, format);
     for (int round = 0; round < 400; ++round) {

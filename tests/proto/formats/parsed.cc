@@ -94,7 +94,8 @@ ParsedMesh parse_ply(const std::string& bytes) {
   EXPECT_NE(header.find("format binary_little_endian 1.0"), std::string::npos);
   EXPECT_EQ(bytes.size(), offset + vertices * 24 + faces * 13);
   for (std::size_t i = 0; i < vertices; ++i, offset += 24)
-    mesh.vertices.push_back({at<double>(bytes, offset), at<double>(bytes, offset + 8), at<double>(bytes, offset + 16)});
+    mesh.vertices.push_back(
+        {at<double>(bytes, offset), at<double>(bytes, offset + 8), at<double>(bytes, offset + 16)});
   for (std::size_t i = 0; i < faces; ++i, offset += 13) {
     EXPECT_EQ(at<std::uint8_t>(bytes, offset), 3);
     mesh.triangles.push_back({at<std::uint32_t>(bytes, offset + 1), at<std::uint32_t>(bytes, offset + 5),
@@ -203,19 +204,23 @@ ParsedMesh parse_glb(const std::string& bytes) {
     }
     mesh.vertices.push_back({scene[0], -scene[2], scene[1]});  // y up becomes z up
   }
-  const auto numbers = [&positions](const char* name) { return positions.at(name).get<std::array<float, 3>>(); };
+  const auto numbers = [&positions](const char* name) {
+    return positions.at(name).get<std::array<float, 3>>();
+  };
   EXPECT_EQ(numbers("min"), low);
   EXPECT_EQ(numbers("max"), high);
   if (json.at("accessors").size() < 2) return mesh;
   const auto start = binary + json.at("bufferViews").at(1).at("byteOffset").get<std::size_t>();
   for (std::size_t i = 0; i < json.at("accessors").at(1).at("count").get<std::size_t>() / 3; ++i) {
-    mesh.triangles.push_back({at<std::uint32_t>(bytes, start + 12 * i), at<std::uint32_t>(bytes, start + 12 * i + 4),
+    mesh.triangles.push_back({at<std::uint32_t>(bytes, start + 12 * i),
+                              at<std::uint32_t>(bytes, start + 12 * i + 4),
                               at<std::uint32_t>(bytes, start + 12 * i + 8)});
   }
   return mesh;
 }
 
-void expect_mesh_of(const ParsedMesh& parsed, const tin::terrain::Terrain& terrain, double across, double up) {
+void expect_mesh_of(const ParsedMesh& parsed, const tin::terrain::Terrain& terrain, double across,
+                    double up) {
   const auto vertices = terrain.vertices_by_id();
   ASSERT_EQ(parsed.vertices.size(), vertices.size());
   std::vector<std::uint32_t> number(terrain.mesh().vertex_slots());

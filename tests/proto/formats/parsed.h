@@ -13,7 +13,7 @@ namespace tests::formats {
 struct ParsedMesh {
   std::vector<std::array<double, 3>> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // numbers from 0
-  std::size_t hidden = 0;                                // of the triangles, where a format says so
+  std::size_t hidden = 0;                               // of the triangles, where a format says so
 };
 
 ParsedMesh parse_obj(const std::string& text);

@@ -50,15 +50,16 @@ TEST_P(HomecomingTest, ACrsWithoutACodeIsKept) {
   EXPECT_EQ(rebuilt(must_read(GetParam(), written(terrain, GetParam()))).digest(), terrain.digest());
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, HomecomingTest, testing::Values("obj", "ply", "ply-ascii", "2dm", "landxml"),
-                         [](const auto& one) {
+INSTANTIATE_TEST_SUITE_P(Formats, HomecomingTest,
+                         testing::Values("obj", "ply", "ply-ascii", "2dm", "landxml"), [](const auto& one) {
                            std::string name = one.param;
                            std::erase(name, '-');
                            return name;
                          });
 
 TEST(FrameNoteTest, IsReadBackInEveryBit) {
-  tin::frame::Frame frame{"a \"quoted\" name", {1.0 / 3, 0.1 + 0.2, 7}, {-1e-300, 1e300, 1'000'000'000'000}, "yd", 0.9144};
+  tin::frame::Frame frame{
+      "a \"quoted\" name", {1.0 / 3, 0.1 + 0.2, 7}, {-1e-300, 1e300, 1'000'000'000'000}, "yd", 0.9144};
   EXPECT_EQ(*read_frame_note(frame_note(frame)), frame);
   EXPECT_EQ(find_frame_note("  tinsmith-frame {\"a\":1}"), "{\"a\":1}");
   EXPECT_EQ(find_frame_note("frame {}"), "");
@@ -67,10 +68,16 @@ TEST(FrameNoteTest, IsReadBackInEveryBit) {
 TEST(FrameNoteTest, AnAxisThatIsNoneIsRefused) {
   const std::string good = frame_note(projected_frame());
   ASSERT_TRUE(read_frame_note(good).ok());
-  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
-           {"\"unit\":1,", "\"unit\":0,"}, {"\"unit\":1,", "\"unit\":-1,"}, {"\"unit\":1,", "\"unit\":\"1\","},
-           {"\"parts\":1000", "\"parts\":0"}, {"\"parts\":1000", "\"parts\":1e300"}, {"\"parts\":1000", "\"parts\":1.5"},
-           {"\"origin\":500000.125", "\"origin\":1e999"}, {"\"metres\":0.3048", "\"metres\":0"}, {"}", ""}}) {
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"\"unit\":1,", "\"unit\":0,"},
+                                                        {"\"unit\":1,", "\"unit\":-1,"},
+                                                        {"\"unit\":1,", "\"unit\":\"1\","},
+                                                        {"\"parts\":1000", "\"parts\":0"},
+                                                        {"\"parts\":1000", "\"parts\":1e300"},
+                                                        {"\"parts\":1000", "\"parts\":1.5"},
+                                                        {"\"origin\":500000.125", "\"origin\":1e999"},
+                                                        {"\"metres\":0.3048", "\"metres\":0"},
+                                                        {"}", ""}}) {
     std::string bad = good;
     bad.replace(bad.find(from), from.size(), to);
     EXPECT_FALSE(read_frame_note(bad).ok()) << bad;
@@ -79,8 +86,9 @@ TEST(FrameNoteTest, AnAxisThatIsNoneIsRefused) {
 
 TEST(ObjReadTest, DialectsOfOthers) {
   const MeshPoints points = must_read(
-      "obj", "mtllib a.mtl\r\no hill\r\nv 1 2 3\r\n v\t4 5e0 +6 1.0\r\nv 7 8 9 0.1 0.2 0.3\r\nvn 0 0 1\r\nvt 0 0\r\n"
-             "f 1/1/1 2//1 3\r\nf -1 -2 -3\r\nf 1 2 4\r\nusemtl x\r\nv -1 -2 -3");
+      "obj",
+      "mtllib a.mtl\r\no hill\r\nv 1 2 3\r\n v\t4 5e0 +6 1.0\r\nv 7 8 9 0.1 0.2 0.3\r\nvn 0 0 1\r\nvt 0 0\r\n"
+      "f 1/1/1 2//1 3\r\nf -1 -2 -3\r\nf 1 2 4\r\nusemtl x\r\nv -1 -2 -3");
   EXPECT_EQ(points.points, (std::vector<Position>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {-1, -2, -3}}));
   EXPECT_FALSE(points.frame);
 }
@@ -91,24 +99,29 @@ TEST(PlyReadTest, EveryTypeAndOrderOfBytes) {
     std::memcpy(bytes.data(), &value, sizeof value);
     return std::string(bytes.rbegin(), bytes.rend());
   };
-  const std::string header = "comment made elsewhere\nobj_info x\nelement camera 2\nproperty list uchar short ids\n"
-                             "property uchar kind\nelement vertex 2\nproperty float32 x\nproperty list uint8 float w\n"
-                             "property int16 z\nproperty double y\nproperty uchar red\nelement face 1\n"
-                             "property list uchar uint vertex_index\nend_header\n";
+  const std::string header =
+      "comment made elsewhere\nobj_info x\nelement camera 2\nproperty list uchar short ids\n"
+      "property uchar kind\nelement vertex 2\nproperty float32 x\nproperty list uint8 float w\n"
+      "property int16 z\nproperty double y\nproperty uchar red\nelement face 1\n"
+      "property list uchar uint vertex_index\nend_header\n";
   std::string bytes = "ply\nformat binary_big_endian 1.0\n" + header;
-  bytes += big(std::uint8_t{2}) + big(std::int16_t{5}) + big(std::int16_t{6}) + "k" + big(std::uint8_t{0}) + "k";
+  bytes +=
+      big(std::uint8_t{2}) + big(std::int16_t{5}) + big(std::int16_t{6}) + "k" + big(std::uint8_t{0}) + "k";
   bytes += big(1.5F) + big(std::uint8_t{1}) + big(9.0F) + big(std::int16_t{-300}) + big(2.25) + "\xFF";
   bytes += big(-4.0F) + big(std::uint8_t{0}) + big(std::int16_t{7}) + big(1e9) + std::string(1, '\0');
   const std::vector<Position> expected{{1.5, 2.25, -300}, {-4, 1e9, 7}};
   EXPECT_EQ(must_read("ply", bytes).points, expected);
   EXPECT_EQ(must_read("ply", "ply\r\nformat ascii 1.0\n" + header +
-                                 "2 5 6 1\n0 1\n\n1.5 1 9 -300 2.25 255\n-4 0 7 1e9 0\n3 0 1 0\n").points,
+                                 "2 5 6 1\n0 1\n\n1.5 1 9 -300 2.25 255\n-4 0 7 1e9 0\n3 0 1 0\n")
+                .points,
             expected);
 }
 
 TEST(Sms2dmReadTest, CardsOfOthersArePassedOver) {
-  const MeshPoints points = must_read("2dm", "MESH2D\nNUM_MATERIALS_PER_ELEM 1\nE4Q 1 1 2 3 4 1\nND 7 1.0E+00 2.0 3.0\n"
-                                             "ND 3 4 5 6\nNS 1 2 -3\nBEGPARAMDEF\nGM \"Mesh\"\n");
+  const MeshPoints points =
+      must_read("2dm",
+                "MESH2D\nNUM_MATERIALS_PER_ELEM 1\nE4Q 1 1 2 3 4 1\nND 7 1.0E+00 2.0 3.0\n"
+                "ND 3 4 5 6\nNS 1 2 -3\nBEGPARAMDEF\nGM \"Mesh\"\n");
   EXPECT_EQ(points.points, (std::vector<Position>{{1, 2, 3}, {4, 5, 6}}));
 }
 
@@ -140,8 +153,8 @@ TEST(LandXmlReadTest, ASurfaceByItsName) {
 }
 
 TEST(LandXmlReadTest, ElevationsMayHaveAnotherUnitThanPositions) {
-  const MeshPoints points =
-      must_read("landxml", "<LandXML><Units><Metric linearUnit=\"meter\" elevationUnit=\"feet\"/></Units></LandXML>");
+  const MeshPoints points = must_read(
+      "landxml", "<LandXML><Units><Metric linearUnit=\"meter\" elevationUnit=\"feet\"/></Units></LandXML>");
   EXPECT_EQ(points.horizontal->name, "metre");
   EXPECT_EQ(points.vertical->name, "foot");
 }

@@ -81,7 +81,8 @@ TEST(TerrainMeshTest, EveryValidSampleOfASimplifiedTerrainStaysCovered) {
 TEST(TerrainMeshTest, ABoxTakesTheTrianglesThatTouchItWithTheirVertices) {
   const Terrain terrain = random_terrain(2000);
   const proto::Bbox box{500000, 4099900, 500100, 4100000, {}, {}};
-  const ParsedMesh part = parse_obj(written(terrain, "obj", {.box = box})), whole = parse_obj(written(terrain, "obj"));
+  const ParsedMesh part = parse_obj(written(terrain, "obj", {.box = box})),
+                   whole = parse_obj(written(terrain, "obj"));
   const auto touching = [&box](const ParsedMesh& mesh) {
     std::size_t count = 0;
     for (const auto& t : mesh.triangles) {
@@ -102,8 +103,8 @@ TEST(TerrainMeshTest, ABoxTakesTheTrianglesThatTouchItWithTheirVertices) {
   };
   ASSERT_GT(part.triangles.size(), 20U);
   EXPECT_LT(part.triangles.size(), whole.triangles.size() / 2);
-  EXPECT_LE(touching(whole), part.triangles.size());        // the walk may miss a grazing one
-  EXPECT_GE(touching(part) + 12, part.triangles.size());    // and all that came do touch
+  EXPECT_LE(touching(whole), part.triangles.size());      // the walk may miss a grazing one
+  EXPECT_GE(touching(part) + 12, part.triangles.size());  // and all that came do touch
   std::vector<bool> used(part.vertices.size());
   for (const auto& t : part.triangles) {
     for (const auto corner : t) used.at(corner) = true;
@@ -113,7 +114,8 @@ TEST(TerrainMeshTest, ABoxTakesTheTrianglesThatTouchItWithTheirVertices) {
 
 TEST(TerrainMeshTest, ABoxWithoutAnythingIsAnError) {
   const Terrain terrain = random_terrain(10);
-  EXPECT_EQ(TerrainMesh::create(terrain, {.box = proto::Bbox{0, 0, 1, 1, {}, {}}}).error().where, "query:bbox");
+  EXPECT_EQ(TerrainMesh::create(terrain, {.box = proto::Bbox{0, 0, 1, 1, {}, {}}}).error().where,
+            "query:bbox");
   EXPECT_EQ(TerrainMesh::create(Terrain(projected_frame()), {}).error().code, Code::kInvalidValue);
 }
 

@@ -15,12 +15,13 @@ TEST(ObjTest, HoldsEveryVertexAndTriangleExactly) {
 
 TEST(ObjTest, TwoTrianglesAsTheyMustBe) {
   const Terrain terrain = drawn_terrain({"12", "34"});
-  EXPECT_EQ(written(terrain, "obj", {.title = "two\ntriangles"}),
-            "# Tinsmith: z is up\n# title two triangles\n# crs EPSG:32632\n# vertical unit foot\n"
-            R"(# tinsmith-frame {"crs":"EPSG:32632","x":{"origin":500000.125,"unit":1,"parts":1000},)"
-            R"("y":{"origin":4100000.1,"unit":0.3,"parts":300},"verticalUnit":{"name":"foot","metres":0.3048}})"
-            "\nv 500000.125 4100000.1 1\nv 500010.125 4100000.1 2\nv 500000.125 4099990.1 3\n"
-            "v 500010.125 4099990.1 4\nf 1 3 4\nf 1 4 2\n");
+  EXPECT_EQ(
+      written(terrain, "obj", {.title = "two\ntriangles"}),
+      "# Tinsmith: z is up\n# title two triangles\n# crs EPSG:32632\n# vertical unit foot\n"
+      R"(# tinsmith-frame {"crs":"EPSG:32632","x":{"origin":500000.125,"unit":1,"parts":1000},)"
+      R"("y":{"origin":4100000.1,"unit":0.3,"parts":300},"verticalUnit":{"name":"foot","metres":0.3048}})"
+      "\nv 500000.125 4100000.1 1\nv 500010.125 4100000.1 2\nv 500000.125 4099990.1 3\n"
+      "v 500010.125 4099990.1 4\nf 1 3 4\nf 1 4 2\n");
 }
 
 TEST(PlyTest, HoldsEveryVertexAndTriangleExactlyInBothEncodings) {
@@ -75,13 +76,15 @@ TEST(CityJsonTest, HoldsEveryVertexOnTheLatticeAndEveryTriangle) {
   EXPECT_EQ(city.at("metadata").at("referenceSystem"), "https://www.opengis.net/def/crs/EPSG/0/32632");
   const Terrain drawn = drawn_terrain({"12", "34"});
   const auto small = nlohmann::json::parse(written(drawn, "cityjson"));
-  EXPECT_EQ(small.at("vertices"), nlohmann::json::parse("[[0,0,1000],[10000,0,2000],[0,-10000,3000],[10000,-10000,4000]]"));
+  EXPECT_EQ(small.at("vertices"),
+            nlohmann::json::parse("[[0,0,1000],[10000,0,2000],[0,-10000,3000],[10000,-10000,4000]]"));
 }
 
 TEST(CityJsonTest, HeightsThatAreNoTerrainsStayWholeNumbers) {
   Terrain terrain = drawn_terrain({"12", "34"});
-  const auto applied = terrain.apply(std::vector<tin::terrain::Edit>{tin::terrain::SetZ{terrain.vertices_by_id()[0].id, -1e30}},
-                                     tin::terrain::Duplicates::kReject);
+  const auto applied = terrain.apply(
+      std::vector<tin::terrain::Edit>{tin::terrain::SetZ{terrain.vertices_by_id()[0].id, -1e30}},
+      tin::terrain::Duplicates::kReject);
   ASSERT_TRUE(applied.ok());
   const ParsedMesh parsed = parse_cityjson(written(terrain, "cityjson"));
   EXPECT_NEAR(parsed.vertices[0][2] / -1e30, 1, 1e-12);
@@ -119,7 +122,8 @@ TEST(MeshFormatsTest, EqualTerrainsGiveEqualBytes) {
 
 TEST(MeshFormatsTest, OneVertexIsAFileInEveryFormat) {
   const Terrain terrain = random_terrain(1);
-  for (const auto& format : proto::formats::mesh_formats()) EXPECT_FALSE(written(terrain, format.name).empty());
+  for (const auto& format : proto::formats::mesh_formats())
+    EXPECT_FALSE(written(terrain, format.name).empty());
   EXPECT_EQ(parse_obj(written(terrain, "obj")).vertices.size(), 1U);
 }
 

@@ -101,7 +101,8 @@ TEST_F(DelimitedTest, HoldsItsLimits) {
   EXPECT_EQ(read("1 2 3\n4 5 6\n", options).placements.size(), 2U);
   options.max_samples = 1;
   EXPECT_EQ(refuse("1 2 3\n4 5 6\n", options).code, Code::kTooLarge);
-  EXPECT_EQ(refuse("1 2 3\n" + std::string(proto::formats::LineReader::kLongestLine + 1, ' ')).code, Code::kMalformed);
+  EXPECT_EQ(refuse("1 2 3\n" + std::string(proto::formats::LineReader::kLongestLine + 1, ' ')).code,
+            Code::kMalformed);
 }
 
 TEST_F(DelimitedTest, ManyPointsKeepTheirOrderAndCanBeCancelled) {
