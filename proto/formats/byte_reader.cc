@@ -51,10 +51,11 @@ bool LineReader::fill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  if (end_ == buffer_.size()) {
+  if (end_ == kLongestLine) {
     failed_ = true;
     return false;
   }
+  if (end_ == buffer_.size()) buffer_.resize(2 * buffer_.size());
   const std::size_t got = source_.read(buffer_.data() + end_, buffer_.size() - end_);
   at_end_ = got == 0;
   end_ += got;

@@ -79,7 +79,7 @@ class LineReader {
   bool fill();
 
   ByteReader& source_;
-  std::vector<char> buffer_ = std::vector<char>(kLongestLine);
+  std::vector<char> buffer_ = std::vector<char>(kLongestLine / 16);  // grows up to the whole
   std::size_t begin_ = 0, end_ = 0;
   std::uint64_t number_ = 0, bytes_ = 0;
   bool failed_ = false, at_end_ = false;

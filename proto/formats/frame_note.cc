@@ -100,4 +100,27 @@ std::string_view find_frame_note(std::string_view comment) {
   return note == std::string_view::npos ? std::string_view() : comment.substr(note);
 }
 
+std::string_view find_frame_member(std::string_view json) {
+  const std::string name = '"' + std::string(kFrameNoteName) + "\":{";
+  const std::size_t begin = json.find(name);
+  if (begin == std::string_view::npos) return {};
+  json.remove_prefix(begin + name.size() - 1);
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{') {
+      ++depth;
+    } else if (c == '}' && --depth == 0) {
+      return json.substr(0, i + 1);
+    }
+  }
+  return {};
+}
+
 }  // namespace proto::formats

@@ -23,4 +23,7 @@ tin::base::Result<tin::frame::Frame> read_frame_note(std::string_view text);
 /// The note within a line of comment (without its comment mark), or empty.
 std::string_view find_frame_note(std::string_view comment);
 
+/// The note that is a member of a JSON object, from the beginning of the object's text; or empty.
+std::string_view find_frame_member(std::string_view json);
+
 }  // namespace proto::formats

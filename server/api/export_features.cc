@@ -17,12 +17,12 @@ constexpr std::size_t kPiece = 64 * 1024;
 class GeoJsonSource : public http::BodySource {
  public:
   GeoJsonSource(const ExportTask& task, Positions positions, Coordinates coordinates,
-                std::optional<std::string> crs_urn)
+                const proto::formats::CollectionHead& head)
       : version_(task.version),
         kind_(task.kind),
         reader_(*version_.terrain, kind_, {}, std::move(positions), task.wanted.box, task.wanted.voids),
         writer_(buffer_, coordinates) {
-    writer_.begin({std::nullopt, std::nullopt, {}, std::move(crs_urn)});
+    writer_.begin(head);
   }
 
   bool next(std::string& piece) override {
@@ -99,16 +99,20 @@ Result<http::Body> export_geojson(ExportTask& task) {
   const auto& frame = task.terrain().frame();
   auto positions = Positions::to_geojson(frame);
   Coordinates coordinates = frame.crs.empty() ? Coordinates::kProjected : Coordinates::kDegrees;
-  std::optional<std::string> urn;
+  proto::formats::CollectionHead head;
   if (!task.wanted.crs.empty()) {
     const auto crs = gdal::read_crs(task.wanted.crs);
     if (!crs) return tin::base::error(tin::base::Code::kInvalidValue, crs.error().message, "query:crs");
     positions = Positions::between(frame.crs, crs->name, "query:crs");
     coordinates = crs->scale.geographic ? Coordinates::kDegrees : Coordinates::kProjected;
-    if (crs->name != "EPSG:4326") urn = proto::crs_urn(crs->name);
+    if (crs->name != "EPSG:4326") head.crs_urn = proto::crs_urn(crs->name);
   }
   if (!positions) return positions.error();
-  return http::Body(std::make_unique<GeoJsonSource>(task, std::move(*positions), coordinates, urn));
+  if (positions->identity()) {
+    coordinates = Coordinates::kExact;
+    head.frame_note = proto::formats::frame_note(frame);
+  }
+  return http::Body(std::make_unique<GeoJsonSource>(task, std::move(*positions), coordinates, head));
 }
 
 Result<http::Body> export_geopackage(ExportTask& task) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "proto/formats/byte_reader.h"
 #include "proto/formats/frame_note.h"
 #include "server/gdal/import_internal.h"
 #include "server/gdal/library.h"
@@ -153,6 +154,20 @@ class PointReader {
   std::vector<RawPoint> points_;
 };
 
+/// What a file of ours notes of the lattice: as metadata, or as a member of the GeoJSON.
+std::string note_of(const ImportTask& task, OGRLayer& layer) {
+  constexpr std::size_t kHead = 64 * 1024;
+  if (task.format == Format::kGeoJson) {
+    std::string head(kHead, '\0');
+    proto::formats::FileReader file(task.workspace.file());
+    head.resize(file.read(head.data(), head.size()));
+    return std::string(proto::formats::find_frame_member(head));
+  }
+  const std::string name(proto::formats::kFrameNoteName);
+  const char* const note = layer.GetMetadataItem(name.c_str());
+  return note == nullptr ? "" : note;
+}
+
 }  // namespace
 
 Result<RawPoints> read_vector_points(const ImportTask& task) {
@@ -182,8 +197,7 @@ Result<RawPoints> read_vector_points(const ImportTask& task) {
   raw.points = reader.take();
   raw.crs = *std::move(crs);
   raw.driver = driver_name(task.format);
-  const char* const note = (*layer)->GetMetadataItem(std::string(proto::formats::kFrameNoteName).c_str());
-  if (note != nullptr) {
+  if (const std::string note = note_of(task, **layer); !note.empty()) {
     if (auto taken = take_note(raw, note); !taken) return taken.error();
   }
   return raw;

@@ -65,6 +65,16 @@ TEST(FrameNoteTest, IsReadBackInEveryBit) {
   EXPECT_EQ(find_frame_note("frame {}"), "");
 }
 
+TEST(FrameNoteTest, IsFoundInTheBeginningOfAnObject) {
+  tin::frame::Frame frame = projected_frame();
+  frame.crs = R"(odd } { \ name")";
+  const std::string note = frame_note(frame), before = R"({"type":"FeatureCollection","tinsmith-frame":)";
+  EXPECT_EQ(find_frame_member(before + note + R"(,"features":[{}]})"), note);
+  EXPECT_EQ(find_frame_member(before + note.substr(0, note.size() - 1)), "");
+  EXPECT_EQ(find_frame_member(R"({"features":[]})"), "");
+  EXPECT_EQ(find_frame_member(R"({"tinsmith-frame":{"a":"\)"), "");
+}
+
 TEST(FrameNoteTest, AnAxisThatIsNoneIsRefused) {
   const std::string good = frame_note(projected_frame());
   ASSERT_TRUE(read_frame_note(good).ok());
