@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "tin/query/void_mask.h"
+#include "tin/query/void_triangles.h"
 
 namespace proto::formats {
 

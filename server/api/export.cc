@@ -34,12 +34,11 @@ struct Unfinished {
 
 /// Parameters that would have no effect: saying so beats ignoring them.
 Result<void> check_format_parameters(const Request& request, const ExportFormat& format) {
-  for (const std::string_view name : {"cell-size", "collection"}) {
-    if (!request.query_value(name) || takes_parameter(format, name)) continue;
-    return error(
-        Code::kInvalidValue,
-        "The parameter " + std::string(name) + " does not go with f=" + std::string(format.name) + ".",
-        "query:" + std::string(name));
+  for (const auto& [name, value] : request.query) {
+    if (takes_parameter(format, name)) continue;
+    return error(Code::kInvalidValue,
+                 "The parameter " + name + " does not go with f=" + std::string(format.name) + ".",
+                 "query:" + name);
   }
   return {};
 }

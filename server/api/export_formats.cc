@@ -59,8 +59,11 @@ std::string export_format_names() {
 }
 
 bool takes_parameter(const ExportFormat& format, std::string_view parameter) {
-  if (parameter == "cell-size") return format.family == ExportFamily::kRaster;
-  if (parameter == "collection") return format.family == ExportFamily::kFeatures;
+  const auto is_one_of = [parameter](const auto& names) {
+    return std::find(names.begin(), names.end(), parameter) != names.end();
+  };
+  if (is_one_of(kRasterParameters)) return format.family == ExportFamily::kRaster;
+  if (is_one_of(kFeatureParameters)) return format.family == ExportFamily::kFeatures;
   return true;
 }
 

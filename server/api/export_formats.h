@@ -2,6 +2,7 @@
 // in openapi.json is held against it by a test.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,10 @@ std::span<const ExportFormat> export_formats();
 const ExportFormat* find_export_format(std::string_view name);
 /// "geotiff, geojson and obj".
 std::string export_format_names();
+
+/// Query parameters that have an effect on one family only.
+inline constexpr std::array<std::string_view, 1> kRasterParameters{"cell-size"};
+inline constexpr std::array<std::string_view, 1> kFeatureParameters{"collection"};
 
 /// Whether the query parameter of this name has an effect on the format.
 bool takes_parameter(const ExportFormat& format, std::string_view parameter);

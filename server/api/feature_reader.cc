@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tin/query/void_mask.h"
+#include "tin/query/void_triangles.h"
 
 namespace server::api {
 

@@ -36,7 +36,7 @@ struct Feature {
 class FeatureReader {
  public:
   /// `box` is in the coordinates that `positions` converts to. Features whose positions have no counterpart
-  /// there are left out; with kKeep also triangles over voids (tin/query/void_mask.h).
+  /// there are left out; with kKeep also triangles over voids (tin/query/void_triangles.h).
   FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from,
                 Positions positions, std::optional<proto::Bbox> box,
                 tin::query::Voids voids = tin::query::Voids::kFill);

@@ -3,7 +3,7 @@
 
 #include "tests/proto/formats/parsed.h"
 #include "tests/proto/formats/support.h"
-#include "tin/query/void_mask.h"
+#include "tin/query/void_triangles.h"
 
 namespace tests::formats {
 namespace {

@@ -1,4 +1,4 @@
-#include "tin/query/void_mask.h"
+#include "tin/query/void_triangles.h"
 
 #include <algorithm>
 #include <cmath>
