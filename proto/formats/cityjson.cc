@@ -12,9 +12,10 @@ namespace {
 
 constexpr double kHeightScale = 0.001, kProjectedScale = 0.001, kDegreeScale = 1e-9;
 
-/// "https://www.opengis.net/def/crs/EPSG/0/7415", as CityJSON wants it; nothing for other CRSs.
+/// "https://www.opengis.net/def/crs/EPSG/0/7415", as CityJSON wants it; nothing for other CRSs. Longitude comes first
+/// here, so WGS 84 is called CRS84.
 std::optional<std::string> reference_system(const std::string& crs) {
-  auto uri = crs_uri(crs);
+  auto uri = crs_uri(crs == "EPSG:4326" ? kCrs84 : crs);
   if (uri && uri->starts_with("http://")) uri->insert(4, "s");
   return uri;
 }
