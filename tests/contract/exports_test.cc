@@ -102,6 +102,7 @@ TEST_F(ExportsTest, MeshesComeHomeWithTheSameDigest) {
                              "geojson&collection=vertices&crs=EPSG:32632"}) {
     SCOPED_TRACE(format);
     const std::string file = server_.get("/tins/hill/export?f=" + std::string(format)).body;
+    const std::string id = "home-" + std::string(format).substr(0, std::string(format).find('&'));
     const RawAnswer made = server_.ask({"POST", "/tins?id=" + id, "application/octet-stream", file});
     ASSERT_EQ(made.status, 201) << made.body;
     const Json home = Json::parse(made.body);
