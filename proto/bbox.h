@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proto/messages.h"
 #include "tin/base/result.h"
@@ -29,6 +30,9 @@ struct Bbox {
 /// Errors: kMalformed, kNotFinite, kInvalidValue (a minimum above its maximum).
 tin::base::Result<Bbox> parse_bbox(std::string_view text, std::string where);
 
+/// The same for longitudes and latitudes, where a box whose first longitude is the larger one goes over the antimeridian:
+/// then it is two boxes.
+tin::base::Result<std::vector<Bbox>> parse_lon_lat_bbox(std::string_view text, std::string where);
 /// Whether a position lies in the box or on its border.
 bool inside(const Position& at, const Bbox& box);
 /// Whether a counter-clockwise triangle and the box have a point in common, seen from above, and their levels

@@ -122,6 +122,10 @@ Result<http::Body> export_geopackage(ExportTask& task) {
 }
 
 Result<http::Body> export_flatgeobuf(ExportTask& task) {
+  if (task.kind == FeatureKind::kEdges) {
+    return tin::base::error(tin::base::Code::kInvalidValue, "Edges are written as GeoJSON only.",
+                            "query:collection");
+  }
   const bool vertices = task.kind == FeatureKind::kVertices;
   return vector_file(task, gdal::VectorDriver::kFlatGeobuf,
                      {vertices ? gdal::VectorLayer::kVertices : gdal::VectorLayer::kTriangles});

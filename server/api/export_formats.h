@@ -30,7 +30,8 @@ const ExportFormat* find_export_format(std::string_view name);
 std::string export_format_names();
 
 /// Query parameters that have an effect on one family only.
-inline constexpr std::array<std::string_view, 1> kRasterParameters{"cell-size"};
+inline constexpr std::array<std::string_view, 6> kRasterParameters{"cell-size", "layer",    "interpolation",
+                                                                   "azimuth",   "altitude", "exaggeration"};
 inline constexpr std::array<std::string_view, 1> kFeatureParameters{"collection"};
 
 /// Whether the query parameter of this name has an effect on the format.

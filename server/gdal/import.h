@@ -17,6 +17,7 @@
 #include "tin/frame/frame.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/source_grid.h"
+#include "tin/terrain/source_samples.h"
 
 namespace server::gdal {
 
@@ -33,9 +34,11 @@ struct ImportOptions {
   std::string layer;                       // vector files, LandXML: the layer or surface; empty: the first
   std::string z_field;                     // point files: column or field of the heights
   std::vector<std::uint8_t> classes;       // LAS: the classes that are wanted; empty: all
-  std::uint64_t max_samples = 50'000'000;  // valid pixels, or points
+  std::uint64_t max_samples = 50'000'000;  // valid pixels, or points; not for a raster's heights alone
   std::uint64_t max_pixels = 200'000'000;  // width x height of a raster
   std::uint64_t max_unpacked_bytes = std::uint64_t{8} << 30;  // of a ZIP archive
+  /// Of a raster no placements, which take 16 bytes each, but its heights only.
+  bool heights_only = false;
 };
 
 /// What a file holds, on a lattice that fits it.
@@ -45,6 +48,7 @@ struct Import {
   /// for. Heights are in frame.vertical_unit.
   std::vector<tin::terrain::Placement> placements;
   std::shared_ptr<tin::terrain::SourceGrid> grid;  // null for points
+  tin::terrain::SourceSamples::Heights heights;    // of a raster: one per pixel, row by row
   std::string driver;                              // GDAL's name of the format, or "CSV"
 };
 
