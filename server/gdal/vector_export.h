@@ -32,6 +32,7 @@ struct VectorSpec {
 /// Errors: kStorage everywhere; as read_crs() from create(). Whoever gets one removes the file.
 class VectorFile {
  public:
+  /// The name of a FlatGeobuf must end in ".fgb": without it the driver would make a folder.
   static tin::base::Result<VectorFile> create(const std::filesystem::path& out, const VectorSpec& spec);
   VectorFile(VectorFile&&) noexcept;
   ~VectorFile();

@@ -46,7 +46,8 @@ TEST_F(ImportsTest, ClassesThatAreNoneChangeNothing) {
            {"?format=las", "x,y,z\n1,2,3\n", 415},
            {"?layer=none", "<LandXML><Surfaces/></LandXML>", 422},
            {"", "<LandXML><Surfaces/></LandXML>", 422},
-           {"", "v 1 2\n", 415},
+           {"", "v 1 2\n", 400},
+           {"", "\x89HDF", 415},
            {"?format=obj", "v 1 2\n", 400},
            {"", "<!DOCTYPE a [<!ENTITY b \"c\">]><LandXML/>", 415}}) {
     SCOPED_TRACE(query + " " + body.substr(0, 20));
