@@ -1,5 +1,6 @@
 #include "proto/bbox.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <vector>
@@ -9,6 +10,32 @@ namespace proto {
 using tin::base::Code;
 using tin::base::error;
 using tin::base::Result;
+
+namespace {
+
+/// Whether the box lies wholly beyond the edge from `a` to `b` of a counter-clockwise triangle.
+bool beyond(const Position& a, const Position& b, const Bbox& box) {
+  const double normal_x = b.y - a.y, normal_y = a.x - b.x;  // points outwards
+  const double nearest_x = normal_x > 0 ? box.min_x : box.max_x,
+               nearest_y = normal_y > 0 ? box.min_y : box.max_y;
+  return normal_x * (nearest_x - a.x) + normal_y * (nearest_y - a.y) > 0;
+}
+
+}  // namespace
+
+bool inside(const Position& p, const Bbox& box) {
+  const bool level = !box.min_z || (p.z >= *box.min_z && p.z <= *box.max_z);
+  return level && p.x >= box.min_x && p.x <= box.max_x && p.y >= box.min_y && p.y <= box.max_y;
+}
+
+bool touches(const std::array<Position, 3>& c, const Bbox& box) {
+  const auto [min_x, max_x] = std::minmax({c[0].x, c[1].x, c[2].x});
+  const auto [min_y, max_y] = std::minmax({c[0].y, c[1].y, c[2].y});
+  const auto [min_z, max_z] = std::minmax({c[0].z, c[1].z, c[2].z});
+  if (min_x > box.max_x || max_x < box.min_x || min_y > box.max_y || max_y < box.min_y) return false;
+  if (box.min_z && (min_z > *box.max_z || max_z < *box.min_z)) return false;
+  return !beyond(c[0], c[1], box) && !beyond(c[1], c[2], box) && !beyond(c[2], c[0], box);
+}
 
 Result<std::uint64_t> parse_count(std::string_view text, std::uint64_t min, std::uint64_t max,
                                   std::string where) {

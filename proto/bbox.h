@@ -1,12 +1,14 @@
 // Numbers and boxes in query strings: the whole text, finite, in range, or an error that names the parameter.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "proto/messages.h"
 #include "tin/base/result.h"
 
 namespace proto {
@@ -31,5 +33,10 @@ tin::base::Result<Bbox> parse_bbox(std::string_view text, std::string where);
 /// The same for longitudes and latitudes, where a box whose first longitude is the larger one goes over the antimeridian:
 /// then it is two boxes.
 tin::base::Result<std::vector<Bbox>> parse_lon_lat_bbox(std::string_view text, std::string where);
+/// Whether a position lies in the box or on its border.
+bool inside(const Position& at, const Bbox& box);
+/// Whether a counter-clockwise triangle and the box have a point in common, seen from above, and their levels
+/// too.
+bool touches(const std::array<Position, 3>& corners, const Bbox& box);
 
 }  // namespace proto

@@ -1,5 +1,6 @@
 #include "proto/formats/geojson.h"
 
+#include "proto/formats/frame_note.h"
 #include "proto/json_write.h"
 #include "proto/messages_internal.h"
 #include "proto/numbers.h"
@@ -48,9 +49,7 @@ std::string feature_with_links(std::string_view feature, std::span<const Link> l
 }
 
 GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates, bool continued)
-    : out_(out),
-      decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals),
-      first_(!continued) {}
+    : out_(out), coordinates_(coordinates), first_(!continued) {}
 
 void GeoJsonWriter::begin(const CollectionHead& head) {
   JsonWriter json;
@@ -62,6 +61,7 @@ void GeoJsonWriter::begin(const CollectionHead& head) {
   if (head.number_matched) json.key("numberMatched").integer(*head.number_matched);
   if (head.number_returned) json.key("numberReturned").integer(*head.number_returned);
   if (!head.links.empty()) write_links(json, head.links);
+  if (head.frame_note) json.key(kFrameNoteName).raw(*head.frame_note);
   json.key("features").begin_array();
   out_ += json.take();
   first_ = true;
@@ -135,9 +135,16 @@ void GeoJsonWriter::separate() {
 
 void GeoJsonWriter::append_position(const Position& at) {
   out_ += '[';
-  append_rounded(out_, at.x, decimals_);
-  out_ += ',';
-  append_rounded(out_, at.y, decimals_);
+  if (coordinates_ == Coordinates::kExact) {
+    append_shortest(out_, at.x);
+    out_ += ',';
+    append_shortest(out_, at.y);
+  } else {
+    const int decimals = coordinates_ == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals;
+    append_rounded(out_, at.x, decimals);
+    out_ += ',';
+    append_rounded(out_, at.y, decimals);
+  }
   out_ += ',';
   append_shortest(out_, at.z);
   out_ += ']';

@@ -21,8 +21,9 @@ namespace proto::formats {
 
 inline constexpr std::string_view kGeoJsonMediaType = "application/geo+json";
 
-/// How x and y are rounded: degrees to 9 decimals (0.1 mm), projected units to 4. z is written in full.
-enum class Coordinates { kDegrees, kProjected };
+/// How x and y are rounded: degrees to 9 decimals (0.1 mm), projected units to 4, or not at all. z is written
+/// in full.
+enum class Coordinates { kDegrees, kProjected, kExact };
 
 /// What stands before the features. Everything may be missing.
 struct CollectionHead {
@@ -31,6 +32,8 @@ struct CollectionHead {
   std::vector<Link> links;
   /// For coordinates other than CRS84: written as the pre-RFC "crs" member, which GDAL and QGIS understand.
   std::optional<std::string> crs_urn;
+  /// As frame_note() gives it: a member that others pass over.
+  std::optional<std::string> frame_note;
 };
 
 /// Appends to a string that the caller may empty between any two calls.
@@ -56,7 +59,7 @@ class GeoJsonWriter {
   void append_position(const Position& at);
 
   std::string& out_;
-  int decimals_;
+  Coordinates coordinates_;
   bool first_;
 };
 

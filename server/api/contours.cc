@@ -58,7 +58,7 @@ bool ContourFile::next(std::string& out, std::size_t* positions) {
   if (ended_) return false;
   GeoJsonWriter writer(out, coordinates_, begun_lines_);
   if (!begun_) {
-    writer.begin({std::nullopt, std::nullopt, {}, crs_urn_});
+    writer.begin({std::nullopt, std::nullopt, {}, crs_urn_, std::nullopt});
     begun_ = true;
     return true;
   }

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "server/api/export_grid.h"
+#include "tin/query/void_triangles.h"
 
 namespace server::api {
 
@@ -22,17 +23,17 @@ Position world(const Terrain& terrain, tin::mesh::VertexSlot slot) {
   return {terrain.frame().x.world(at.x), terrain.frame().y.world(at.y), terrain.z(slot)};
 }
 
-bool inside(const Position& p, const Bbox& box) {
-  const bool level = !box.min_z || (p.z >= *box.min_z && p.z <= *box.max_z);
-  return level && p.x >= box.min_x && p.x <= box.max_x && p.y >= box.min_y && p.y <= box.max_y;
+/// Whether the straight line between two positions and the box have a point in common.
+bool line_touches(const Position& a, const Position& b, const Bbox& box) {
+  const std::array<Position, 3> there_and_back{a, b, a};  // its two sides bound the line from either side
+  return proto::touches(there_and_back, box);
 }
 
-/// Whether the box lies wholly beyond the edge from `a` to `b` of a counter-clockwise triangle.
-bool beyond(const Position& a, const Position& b, const Bbox& box) {
-  const double normal_x = b.y - a.y, normal_y = a.x - b.x;  // points outwards
-  const double nearest_x = normal_x > 0 ? box.min_x : box.max_x,
-               nearest_y = normal_y > 0 ? box.min_y : box.max_y;
-  return normal_x * (nearest_x - a.x) + normal_y * (nearest_y - a.y) > 0;
+bool over_void(const Terrain& terrain, const tin::query::TriangleView& triangle) {
+  return tin::query::over_void(terrain, triangle.slots);
+}
+bool over_void(const Terrain&, const tin::query::EdgeView&) {
+  return false;
 }
 
 /// An extent in the terrain's CRS that holds what lies in the boxes, with room to spare for the bending of straight lines;
@@ -159,20 +160,6 @@ std::optional<Feature> find_feature(const Terrain& terrain, FeatureKind kind, st
   return std::nullopt;
 }
 
-bool touches(const std::array<Position, 3>& c, const Bbox& box) {
-  const auto [min_x, max_x] = std::minmax({c[0].x, c[1].x, c[2].x});
-  const auto [min_y, max_y] = std::minmax({c[0].y, c[1].y, c[2].y});
-  const auto [min_z, max_z] = std::minmax({c[0].z, c[1].z, c[2].z});
-  if (min_x > box.max_x || max_x < box.min_x || min_y > box.max_y || max_y < box.min_y) return false;
-  if (box.min_z && (min_z > *box.max_z || max_z < *box.min_z)) return false;
-  return !beyond(c[0], c[1], box) && !beyond(c[1], c[2], box) && !beyond(c[2], c[0], box);
-}
-
-bool touches(const Position& a, const Position& b, const Bbox& box) {
-  const std::array<Position, 3> there_and_back{a, b, a};  // its two sides bound the line from either side
-  return touches(there_and_back, box);
-}
-
 void write_feature(proto::formats::GeoJsonWriter& writer, FeatureKind kind, const Feature& feature) {
   if (kind == FeatureKind::kVertices) {
     writer.vertex(feature.ids[0], feature.corners[0]);
@@ -184,8 +171,13 @@ void write_feature(proto::formats::GeoJsonWriter& writer, FeatureKind kind, cons
 }
 
 FeatureReader::FeatureReader(const Terrain& terrain, FeatureKind kind, FeatureCursor from, Positions positions,
-                             std::optional<Bbox> box)
-    : terrain_(terrain), kind_(kind), corners_(corner_count(kind)), positions_(std::move(positions)), box_(box) {
+                             std::optional<Bbox> box, tin::query::Voids voids)
+    : terrain_(terrain),
+      kind_(kind),
+      corners_(corner_count(kind)),
+      positions_(std::move(positions)),
+      box_(box),
+      hide_voids_(voids == tin::query::Voids::kKeep && tin::query::has_voids(terrain)) {
   if (kind == FeatureKind::kVertices) {
     next_vertex_ = terrain.ids().first_from(VertexId(from.vertex));
   } else if (kind == FeatureKind::kTriangles) {
@@ -252,6 +244,7 @@ void FeatureReader::collect_from(Walk& walk) {
       exhausted_ = true;
       return;
     }
+    if (hide_voids_ && over_void(terrain_, *found)) continue;
     Feature feature = feature_of(terrain_, *found);
     feature.at = at;
     take(feature);
@@ -284,18 +277,20 @@ void FeatureReader::convert(Positions& positions, std::vector<std::array<Positio
   }
 }
 
+/// Whether a feature with these corners and the box have a point in common.
+bool FeatureReader::meets(const std::array<Position, 3>& corners, const Bbox& box) const {
+  if (kind_ == FeatureKind::kVertices) return proto::inside(corners[0], box);
+  return kind_ == FeatureKind::kTriangles ? proto::touches(corners, box) : line_touches(corners[0], corners[1], box);
+}
+
 void FeatureReader::keep_those_in_boxes() {
   convert(*to_box_, converted_);
-  const auto in = [&](const std::array<Position, 3>& corners, const Bbox& box) {
-    if (kind_ == FeatureKind::kVertices) return inside(corners[0], box);
-    return kind_ == FeatureKind::kTriangles ? touches(corners, box) : touches(corners[0], corners[1], box);
-  };
   std::size_t read = 0;
   std::erase_if(chunk_, [&](const Feature&) {
     const std::size_t i = read++;
     const auto* ok = &ok_[corners_ * i];
     if (std::any_of(ok, ok + corners_, [](std::uint8_t fine) { return fine == 0; })) return true;
-    return std::none_of(boxes_.begin(), boxes_.end(), [&](const Bbox& box) { return in(converted_[i], box); });
+    return std::none_of(boxes_.begin(), boxes_.end(), [&](const Bbox& box) { return meets(converted_[i], box); });
   });
 }
 
@@ -308,9 +303,7 @@ void FeatureReader::to_output() {
     const auto* ok = &ok_[corners_ * read++];
     if (std::any_of(ok, ok + corners_, [](std::uint8_t fine) { return fine == 0; })) return true;
     if (!box_) return false;
-    if (kind_ == FeatureKind::kVertices) return !inside(feature.corners[0], *box_);
-    return kind_ == FeatureKind::kTriangles ? !touches(feature.corners, *box_)
-                                            : !touches(feature.corners[0], feature.corners[1], *box_);
+    return !meets(feature.corners, *box_);
   });
 }
 

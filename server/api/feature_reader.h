@@ -12,6 +12,7 @@
 #include "proto/formats/geojson.h"
 #include "proto/messages.h"
 #include "server/api/positions.h"
+#include "tin/query/elevation.h"
 #include "tin/query/order.h"
 #include "tin/terrain/terrain.h"
 
@@ -41,9 +42,10 @@ struct Feature {
 class FeatureReader {
  public:
   /// `box` is in the coordinates that `positions` converts to. Features whose positions have no counterpart
-  /// there are left out.
+  /// there are left out; with kKeep also triangles over voids (tin/query/void_triangles.h).
   FeatureReader(const tin::terrain::Terrain& terrain, FeatureKind kind, FeatureCursor from,
-                Positions positions, std::optional<proto::Bbox> box);
+                Positions positions, std::optional<proto::Bbox> box,
+                tin::query::Voids voids = tin::query::Voids::kFill);
 
   /// Only features that touch one of these boxes, which may be in a CRS of their own: `to_box` converts into it, `from_box`
   /// out of it. To be called before the first next().
@@ -59,6 +61,7 @@ class FeatureReader {
   void collect_from(Walk& walk);
   void take(Feature feature);
   void convert(Positions& positions, std::vector<std::array<proto::Position, 3>>& corners);
+  bool meets(const std::array<proto::Position, 3>& corners, const proto::Bbox& box) const;
   void keep_those_in_boxes();
   void to_output();
 
@@ -67,6 +70,7 @@ class FeatureReader {
   const std::size_t corners_;
   Positions positions_;
   const std::optional<proto::Bbox> box_;
+  const bool hide_voids_;
   std::vector<proto::Bbox> boxes_;
   std::optional<Positions> to_box_;
   std::optional<tin::frame::Extent> near_;  // in the terrain's CRS: what touches the boxes touches this
@@ -83,11 +87,6 @@ class FeatureReader {
 
 /// The feature of a kind that an id names ("7", "1-2-3", "1-2"), in the terrain's CRS; nothing when there is none.
 std::optional<Feature> find_feature(const tin::terrain::Terrain& terrain, FeatureKind kind, std::string_view id);
-
-/// Whether a triangle and a box have a point in common.
-bool touches(const std::array<proto::Position, 3>& corners, const proto::Bbox& box);
-/// The same for the straight line between two positions.
-bool touches(const proto::Position& a, const proto::Position& b, const proto::Bbox& box);
 
 void write_feature(proto::formats::GeoJsonWriter& writer, FeatureKind kind, const Feature& feature);
 

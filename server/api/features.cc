@@ -128,7 +128,7 @@ Result<Page> build_page(const Context& context, const Request& request, const Wa
   }
   make_absolute(page.links, base_url(context.config, request));
   GeoJsonWriter writer(page.body, decimals_of(wanted.crs));
-  writer.begin({*matched, page.features.size(), page.links, std::nullopt});
+  writer.begin({*matched, page.features.size(), page.links, std::nullopt, std::nullopt});
   for (const Feature& f : page.features) write_feature(writer, query.kind, in_wire_order(f, wanted.crs));
   writer.end();
   return page;

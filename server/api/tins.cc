@@ -1,6 +1,7 @@
 // /tins: list, create, show, delete.
 #include "proto/bbox.h"
 #include "server/api/conformance.h"
+#include "server/api/export_formats.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
 #include "server/api/tin_document.h"
@@ -46,9 +47,11 @@ proto::TinDocument tin_document(const app::Tin& tin) {
                     {self, "alternate", "text/html", "As a page"},
                     {self + "/api", "service-desc", std::string(kOpenApiType), "The contract of this TIN (OpenAPI 3.0)"},
                     {self + "/conformance", "conformance", std::string(kJson), "Conformance classes"},
-                    {self + "/collections", "data", std::string(kJson), "Vertices, triangles and edges"},
-                    {self + "/export?f=geotiff", "enclosure", "image/tiff; application=geotiff", "DEM"},
-                    {self + "/export?f=geojson", "enclosure", "application/geo+json", "Triangles"}};
+                    {self + "/collections", "data", std::string(kJson), "Vertices, triangles and edges"}};
+  for (const ExportFormat& format : export_formats()) {
+    document.links.push_back({self + "/export?f=" + std::string(format.name), "enclosure",
+                              std::string(format.media_type), std::string(format.title)});
+  }
   return document;
 }
 
@@ -199,8 +202,8 @@ void add_tins(http::Router& router, Context& context) {
   router.add({.method = Method::kGet, .pattern = "/tins", .query = {"limit"}, .handler = on(list)});
   router.add({.method = Method::kPost,
               .pattern = "/tins",
-              .query = {"id", "title", "crs", "resolution", "layer", "z-field", "vertical-unit", "duplicates",
-                        "format", "tolerance", "effort"},
+              .query = {"id", "title", "crs", "resolution", "layer", "z-field", "class", "vertical-unit",
+                        "duplicates", "format", "tolerance", "effort"},
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});

@@ -30,6 +30,19 @@ Result<std::array<double, 2>> parse_resolution(const std::string& text) {
   return std::array<double, 2>{*x, *y};
 }
 
+/// "2", or "2,8,9".
+Result<std::vector<std::uint8_t>> parse_classes(const std::string& text) {
+  std::vector<std::uint8_t> classes;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const auto one = proto::parse_count(text.substr(at, comma - at), 0, 255, "query:class");
+    if (!one) return one.error();
+    classes.push_back(static_cast<std::uint8_t>(*one));
+    at = comma + 1;
+  }
+  return classes;
+}
+
 /// What the parameters tolerance and effort ask for, if they are there.
 Result<std::optional<tin::simplify::Options>> read_simplification(const Request& request) {
   const auto text = request.query_value("tolerance"), effort = request.query_value("effort");
@@ -77,6 +90,11 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   options.file_name = disposition_file_name(request.header("content-disposition"));
   options.content_type = media_type(request);
   options.format = request.query_value("format").value_or("");
+  if (const auto text = request.query_value("class")) {
+    auto classes = parse_classes(*text);
+    if (!classes) return classes.error();
+    options.classes = *std::move(classes);
+  }
   options.layer = request.query_value("layer").value_or("");
   options.z_field = request.query_value("z-field").value_or("");
   options.max_samples = static_cast<std::uint64_t>(context.config.limits.vertices_per_tin);

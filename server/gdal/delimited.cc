@@ -5,9 +5,11 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstring>
+#include <string>
 #include <system_error>
 
+#include "proto/formats/byte_reader.h"
+#include "proto/formats/frame_note.h"
 #include "server/gdal/delimited_internal.h"
 #include "server/gdal/import_internal.h"
 
@@ -105,7 +107,12 @@ class PointParser {
   PointParser(const std::string& z_field, std::uint64_t limit) : z_field_(lower(z_field)), limit_(limit) {}
 
   std::optional<Error> add(std::string_view line, std::uint64_t number) {
-    if (trimmed(line).empty() || is_comment(trimmed(line))) return std::nullopt;
+    if (trimmed(line).empty()) return std::nullopt;
+    if (is_comment(trimmed(line))) {
+      const auto note = proto::formats::find_frame_note(trimmed(line).substr(1));
+      if (!note.empty()) note_ = note;
+      return std::nullopt;
+    }
     if (!dialect_) {
       dialect_ = guess_dialect(line);
       split(line, *dialect_, fields_);
@@ -125,6 +132,8 @@ class PointParser {
     return add_point(number);
   }
 
+  /// What a comment says of the lattice.
+  const std::optional<std::string>& note() const { return note_; }
   bool degrees() const { return columns_ && columns_->degrees; }
   std::vector<RawPoint> take() { return std::move(points_); }
 
@@ -179,49 +188,10 @@ class PointParser {
   std::optional<Columns> columns_;
   std::vector<std::string_view> fields_;
   std::vector<RawPoint> points_;
+  std::optional<std::string> note_;
 };
 
 }  // namespace
-
-LineReader::LineReader(const std::filesystem::path& file)
-    : file_(std::fopen(file.c_str(), "rb")), buffer_(kLongestLine), failed_(file_ == nullptr) {}
-
-bool LineReader::fill() {
-  if (failed_ || at_end_) return false;
-  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-  end_ -= begin_;
-  begin_ = 0;
-  if (end_ == buffer_.size()) {
-    failed_ = true;
-    return false;
-  }
-  const std::size_t got = std::fread(buffer_.data() + end_, 1, buffer_.size() - end_, file_.get());
-  failed_ = std::ferror(file_.get()) != 0;
-  at_end_ = got == 0;
-  end_ += got;
-  bytes_ += got;
-  return got > 0;
-}
-
-std::optional<std::string_view> LineReader::next() {
-  for (std::size_t searched = 0;;) {
-    const char* const begin = buffer_.data() + begin_;
-    const void* const newline = std::memchr(begin + searched, '\n', end_ - begin_ - searched);
-    if (newline == nullptr) {
-      searched = end_ - begin_;
-      if (fill()) continue;
-      if (failed_ || begin_ == end_) return std::nullopt;
-    }
-    const std::size_t length = newline == nullptr
-                                   ? end_ - begin_
-                                   : static_cast<std::size_t>(static_cast<const char*>(newline) - begin);
-    std::string_view line(buffer_.data() + begin_, length);
-    begin_ += length + (newline == nullptr ? 0 : 1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (++number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    return line;
-  }
-}
 
 Dialect guess_dialect(std::string_view line) {
   for (const char delimiter : {';', '\t', ','}) {
@@ -269,10 +239,9 @@ std::optional<double> parse_number(std::string_view field, const Dialect& dialec
 }
 
 Result<RawPoints> read_delimited_points(const ImportTask& task) {
-  LineReader lines(task.workspace.file());
-  std::error_code problem;
-  const double bytes = static_cast<double>(
-      std::max<std::uintmax_t>(1, std::filesystem::file_size(task.workspace.file(), problem)));
+  proto::formats::FileReader file(task.workspace.file());
+  proto::formats::LineReader lines(file);
+  const double bytes = static_cast<double>(std::max<std::uint64_t>(1, file.size()));
   PointParser parser(task.options.z_field, task.options.max_samples);
   while (const auto line = lines.next()) {
     if (auto bad = parser.add(*line, lines.number())) return *std::move(bad);
@@ -282,7 +251,13 @@ Result<RawPoints> read_delimited_points(const ImportTask& task) {
   }
   if (lines.failed())
     return at_line(Code::kMalformed, "it is too long to be a line of points", lines.number() + 1);
-  RawPoints raw{parser.take(), task.asked_crs, "CSV"};
+  RawPoints raw;
+  raw.points = parser.take();
+  raw.crs = task.asked_crs;
+  raw.driver = "CSV";
+  if (parser.note()) {
+    if (auto taken = take_note(raw, *parser.note()); !taken) return taken.error();
+  }
   if (!raw.crs && parser.degrees()) {
     auto crs = read_crs("OGC:CRS84");
     if (!crs) return crs.error();

@@ -34,6 +34,17 @@ constexpr std::array kTraits{
     FormatTraits{Format::kGeoJson, "GeoJSON", "points.geojson"},
     FormatTraits{Format::kGeoPackage, "GeoPackage", "points.gpkg"},
     FormatTraits{Format::kFlatGeobuf, "FlatGeobuf", "points.fgb"},
+    FormatTraits{Format::kObj, "Wavefront OBJ", "mesh.obj"},
+    FormatTraits{Format::kPly, "PLY", "mesh.ply"},
+    FormatTraits{Format::kSms2dm, "2DM", "mesh.2dm"},
+    FormatTraits{Format::kLandXml, "LandXML", "surface.xml"},
+    FormatTraits{Format::kLas, "LAS", "points.las"},
+    FormatTraits{Format::kShapefile, "Shapefile", "points.shp"},
+    FormatTraits{Format::kZippedShapefile, "zipped Shapefile", "upload.zip"},
+    FormatTraits{Format::kSurferText, "Surfer text grid", "raster.grd"},
+    FormatTraits{Format::kSurferBinary, "Surfer 6 grid", "raster.grd"},
+    FormatTraits{Format::kSurfer7, "Surfer 7 grid", "raster.grd"},
+    FormatTraits{Format::kVtpTerrain, "VTP Binary Terrain", "raster.bt"},
 };
 const FormatTraits& traits(Format format) {
   return *std::find_if(kTraits.begin(), kTraits.end(), [&](const auto& t) { return t.format == format; });
@@ -76,6 +87,27 @@ constexpr std::array kAliases{
     Alias{"fgb", Format::kFlatGeobuf},
     Alias{"flatgeobuf", Format::kFlatGeobuf},
     Alias{"application/flatgeobuf", Format::kFlatGeobuf},
+    Alias{"obj", Format::kObj},
+    Alias{"model/obj", Format::kObj},
+    Alias{"ply", Format::kPly},
+    Alias{"application/ply", Format::kPly},
+    Alias{"2dm", Format::kSms2dm},
+    Alias{"landxml", Format::kLandXml},
+    Alias{"xml", Format::kLandXml},
+    Alias{"application/xml", Format::kLandXml},
+    Alias{"las", Format::kLas},
+    Alias{"laz", Format::kLas},
+    Alias{"application/vnd.las", Format::kLas},
+    Alias{"application/vnd.laszip", Format::kLas},
+    Alias{"shp", Format::kShapefile},
+    Alias{"application/vnd.shp", Format::kShapefile},
+    Alias{"zip", Format::kZippedShapefile},
+    Alias{"application/zip", Format::kZippedShapefile},
+    Alias{"application/vnd.shp+zip", Format::kZippedShapefile},
+    Alias{"gsag", Format::kSurferText},
+    Alias{"gsbg", Format::kSurferBinary},
+    Alias{"gs7bg", Format::kSurfer7},
+    Alias{"bt", Format::kVtpTerrain},
 };
 
 std::string lower(std::string_view text) {
@@ -160,12 +192,22 @@ std::optional<Format> proven(const Content& content) {
   if (content.starts_with("fgb\003fgb")) return Format::kFlatGeobuf;
   if (content.starts_with("UHL1") || content.starts_with("VOL1") || content.starts_with("HDR1"))
     return Format::kDted;
+  if (content.starts_with("LASF")) return Format::kLas;
+  if (content.starts_with({"\0\0\x27\x0a", 4})) return Format::kShapefile;
+  if (content.starts_with("PK\x03\x04")) return Format::kZippedShapefile;
+  if (content.starts_with("DSAA")) return Format::kSurferText;
+  if (content.starts_with("DSBB")) return Format::kSurferBinary;
+  if (content.starts_with("DSRB")) return Format::kSurfer7;
+  if (content.starts_with("binterr1.")) return Format::kVtpTerrain;
   if (is_usgs_dem(content)) return Format::kUsgsDem;
+  if (content.starts_with("ply\n") || content.starts_with("ply\r\n")) return Format::kPly;
   if (!content.is_text()) return is_hgt_size(content.bytes) ? std::optional(Format::kHgt) : std::nullopt;
   std::string text =
       lower(std::string_view(content.head).substr(content.starts_with("\xEF\xBB\xBF") ? 3 : 0));
   text.erase(0, text.find_first_not_of(" \t\r\n"));
   if (text.starts_with('{')) return Format::kGeoJson;
+  if (text.starts_with('<') && text.find("landxml") != std::string::npos) return Format::kLandXml;
+  if (text.starts_with("mesh2d")) return Format::kSms2dm;
   if (is_ascii_grid(text)) return Format::kAsciiGrid;
   return std::nullopt;
 }
@@ -185,12 +227,38 @@ Result<Recognised> hgt(const ImportOptions& options) {
   return Recognised{Format::kHgt, tile + ".hgt"};
 }
 
+/// "GeoTIFF, SRTM HGT ... or LandXML".
+std::string all_titles() {
+  std::string titles;
+  for (const FormatTraits& one : kTraits) {
+    if (&one != kTraits.data()) titles += &one == &kTraits.back() ? " or " : ", ";
+    titles += one.title;
+  }
+  return titles;
+}
+
+/// Lines that begin with "v " come first, after comments and other keywords of OBJ.
+bool is_obj(std::string_view text) {
+  constexpr std::array<std::string_view, 8> kBefore{"#",  "mtllib ", "o ",  "g ",
+                                                    "s ", "vt ",     "vn ", "usemtl "};
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    if (line.starts_with("v ") || line.starts_with("v\t")) return true;
+    const bool blank = line.find_first_not_of(" \t\r") == std::string_view::npos;
+    const bool before = std::any_of(kBefore.begin(), kBefore.end(),
+                                    [line](std::string_view word) { return line.starts_with(word); });
+    if (!blank && !before) return false;
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+  }
+  return false;
+}
+
 tin::base::Error unrecognised(std::optional<Format> expected) {
   std::string message = "The file is not recognised as ";
   if (expected)
     message += "a " + std::string(format_title(*expected)) + " file";
   else
-    message += "GeoTIFF, HGT, ASCII grid, USGS DEM, DTED, CSV, XYZ, GeoJSON, GeoPackage or FlatGeobuf";
+    message += all_titles();
   return error(Code::kUnsupported, std::move(message));
 }
 
@@ -215,7 +283,11 @@ Result<Recognised> recognise(const std::filesystem::path& uploaded, const Import
     const bool markup =
         content->is_text() && content->head.find_first_not_of(" \t\r\n") == content->head.find('<');
     const bool points = content->is_text() && !markup && (!expected || *expected == Format::kDelimited);
-    if (points) found = Format::kDelimited;
+    if (content->is_text() && (expected ? *expected == Format::kObj : is_obj(content->head))) {
+      found = Format::kObj;
+    } else if (points) {
+      found = Format::kDelimited;
+    }
   }
   if (!found || (insisted && *insisted != *found)) return unrecognised(expected);
   if (*found == Format::kHgt) return hgt(options);

@@ -21,6 +21,17 @@ enum class Format {
   kGeoJson,
   kGeoPackage,
   kFlatGeobuf,
+  kObj,
+  kPly,
+  kSms2dm,
+  kLandXml,
+  kLas,
+  kShapefile,
+  kZippedShapefile,
+  kSurferText,
+  kSurferBinary,
+  kSurfer7,
+  kVtpTerrain,
 };
 
 /// A format, and the name under which its file is shown to GDAL.

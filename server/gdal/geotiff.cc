@@ -187,4 +187,51 @@ Result<void> write_geotiff(const std::filesystem::path& out, const RasterSpec& s
   return {};
 }
 
+namespace {
+
+/// A file that goes with its scope, and what GDAL may have put beside it.
+struct Temporary {
+  std::filesystem::path path;
+  ~Temporary() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
+std::optional<Error> copy_as_cog(const std::filesystem::path& from, const std::filesystem::path& out) {
+  const Complaints complaints;
+  CPLStringList options;
+  options.SetNameValue("COMPRESS", "DEFLATE");
+  options.SetNameValue("PREDICTOR", "YES");
+  options.SetNameValue("RESAMPLING", "AVERAGE");
+  options.SetNameValue("BIGTIFF", "IF_SAFER");
+  const char* const drivers[] = {"GTiff", nullptr};
+  Dataset source(GDALDataset::Open(from.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers));
+  Dataset copy;
+  if (source) {
+    copy.reset(GetGDALDriverManager()->GetDriverByName("COG")->CreateCopy(out.c_str(), source.get(), FALSE,
+                                                                          options.List(), nullptr, nullptr));
+  }
+  const bool made = copy != nullptr;
+  copy.reset();
+  if (made && !complaints.any()) return std::nullopt;
+  return error(Code::kStorage,
+               "The cloud-optimised GeoTIFF could not be written" + complaints.aside(out.parent_path()));
+}
+
+}  // namespace
+
+Result<void> write_cog(const std::filesystem::path& out, const RasterSpec& spec, const RowSource& rows,
+                       Progress* progress) {
+  const Temporary plain{out.string() + ".plain.tif"};
+  if (auto written = write_geotiff(plain.path, spec, rows, progress); !written) return written.error();
+  std::error_code ignored;
+  std::filesystem::remove(out, ignored);
+  if (auto bad = copy_as_cog(plain.path, out)) {
+    std::filesystem::remove(out, ignored);
+    return *std::move(bad);
+  }
+  return {};
+}
+
 }  // namespace server::gdal

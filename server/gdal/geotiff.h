@@ -34,4 +34,9 @@ using RowSource = std::function<tin::base::Result<void>(std::int64_t row, std::s
 tin::base::Result<void> write_geotiff(const std::filesystem::path& out, const RasterSpec& spec,
                                       const RowSource& rows, tin::base::Progress* progress);
 
+/// The same as a cloud-optimised GeoTIFF with overviews, each pixel the average of four. A temporary GeoTIFF
+/// is written beside `out` first. Memory and errors: as write_geotiff(); `progress` counts the first half.
+tin::base::Result<void> write_cog(const std::filesystem::path& out, const RasterSpec& spec,
+                                  const RowSource& rows, tin::base::Progress* progress);
+
 }  // namespace server::gdal

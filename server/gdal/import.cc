@@ -34,8 +34,24 @@ Result<std::optional<CrsInfo>> effective_crs(const ImportTask& task, const OGRSp
 
 namespace {
 
+Result<RawPoints> read_points(const ImportTask& task) {
+  switch (task.format) {
+    case Format::kDelimited:
+      return read_delimited_points(task);
+    case Format::kObj:
+    case Format::kPly:
+    case Format::kSms2dm:
+    case Format::kLandXml:
+      return read_mesh_points(task);
+    case Format::kLas:
+      return read_las_points(task);
+    default:
+      return read_vector_points(task);
+  }
+}
+
 Result<Import> import_points(const ImportTask& task) {
-  auto raw = task.format == Format::kDelimited ? read_delimited_points(task) : read_vector_points(task);
+  auto raw = read_points(task);
   if (!raw) return raw.error();
   return place_points(task, *std::move(raw));
 }
@@ -47,11 +63,22 @@ bool holds_raster(Format format) {
     case Format::kAsciiGrid:
     case Format::kUsgsDem:
     case Format::kDted:
+    case Format::kSurferText:
+    case Format::kSurferBinary:
+    case Format::kSurfer7:
+    case Format::kVtpTerrain:
       return true;
     case Format::kDelimited:
     case Format::kGeoJson:
     case Format::kGeoPackage:
     case Format::kFlatGeobuf:
+    case Format::kObj:
+    case Format::kPly:
+    case Format::kSms2dm:
+    case Format::kLandXml:
+    case Format::kLas:
+    case Format::kShapefile:
+    case Format::kZippedShapefile:
       return false;
   }
   return false;
@@ -72,6 +99,10 @@ Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOp
   if (!recognised) return recognised.error();
   const auto workspace = Workspace::create(uploaded, recognised->file_name);
   if (!workspace) return workspace.error();
+  if (!options.classes.empty() && recognised->format != Format::kLas) {
+    return tin::base::error(tin::base::Code::kInvalidValue, "Only the points of LAS files have classes",
+                            "query:class");
+  }
   const ImportTask task{options, *workspace, recognised->format, std::move(asked), progress};
   auto import = holds_raster(task.format) ? import_raster(task) : import_points(task);
   if (import) task.report(1);

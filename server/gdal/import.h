@@ -25,15 +25,18 @@ namespace server::gdal {
 struct ImportOptions {
   std::string file_name;     // helps to recognise the format, and places an HGT; never opened
   std::string content_type;  // helps to recognise the format
-  /// Insists on a format: geotiff, hgt, aaigrid, usgsdem, dted, csv, xyz, geojson, gpkg or fgb.
+  /// Insists on a format: geotiff, hgt, aaigrid, usgsdem, dted, gsag, gsbg, gs7bg, bt, csv, xyz, geojson,
+  /// gpkg, fgb, shp, zip, las, obj, ply, 2dm or landxml.
   std::string format;
   std::string crs;          // replaces or supplies the file's CRS, in any form that read_crs() takes
   double resolution_x = 0;  // lattice steps in CRS units; 0: about 1 mm on the ground
   double resolution_y = 0;
-  std::string layer;                       // vector files: the layer; empty: the first with points
+  std::string layer;                       // vector files, LandXML: the layer or surface; empty: the first
   std::string z_field;                     // point files: column or field of the heights
+  std::vector<std::uint8_t> classes;       // LAS: the classes that are wanted; empty: all
   std::uint64_t max_samples = 50'000'000;  // valid pixels, or points; not for a raster's heights alone
   std::uint64_t max_pixels = 200'000'000;  // width x height of a raster
+  std::uint64_t max_unpacked_bytes = std::uint64_t{8} << 30;  // of a ZIP archive
   /// Of a raster no placements, which take 16 bytes each, but its heights only.
   bool heights_only = false;
 };
@@ -55,7 +58,10 @@ struct Import {
 /// Rasters: band 1, pixel centres, scale and offset applied; pixels that are nodata, masked, not finite or
 /// larger than 1e30 (undeclared fill values) are void. Rows may run north to south or south to north.
 /// Points: columns or fields by their usual names, else the first three numeric columns; GeoJSON is CRS84
-/// unless it says otherwise, and columns called longitude and latitude are too.
+/// unless it says otherwise, and columns called longitude and latitude are too. A shapefile may come alone
+/// (its .shp, with heights in it and without a CRS) or in a ZIP archive that holds it with its companions.
+/// Meshes and surfaces: their vertices; the triangulation is always the terrain's own. A file that was
+/// exported by us notes its lattice, and is put on it again.
 ///
 /// Errors: kInvalidValue (empty file or raster, no valid sample, no georeference, an HGT without its name, no
 /// heights, unknown layer or field), kUnsupported (format, CRS, rotated raster, complex pixels), kMalformed

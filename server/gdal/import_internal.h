@@ -1,6 +1,7 @@
 // What the readers of rasters, vector layers and delimited text share. For this folder only.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +35,10 @@ struct RawPoint {
 };
 struct RawPoints {
   std::vector<RawPoint> points;
-  std::optional<CrsInfo> crs;  // of the file
+  std::optional<CrsInfo> crs;              // the client's, else the file's
+  std::optional<VerticalUnit> vertical;    // of the file
+  double unit_m = 1;                       // metres per unit of x and y, where there is no CRS
+  std::optional<tin::frame::Frame> noted;  // the lattice that a file of ours notes; not to be trusted
   std::string driver;
 };
 
@@ -59,8 +63,20 @@ tin::base::Result<Import> import_raster(const ImportTask& task);
 tin::base::Result<RawPoints> read_vector_points(const ImportTask& task);
 tin::base::Result<RawPoints> read_delimited_points(const ImportTask& task);
 
-/// Fits a frame to the points and snaps them to it. Errors: kInvalidValue when there are none; as
-/// fit_points().
+tin::base::Result<RawPoints> read_mesh_points(const ImportTask& task);
+tin::base::Result<RawPoints> read_las_points(const ImportTask& task);
+
+/// Unpacks the one shapefile of the archive, with its companions, into the workspace, under names of ours;
+/// its .shp. Errors: kMalformed, kUnsupported (no shapefile in it), kInvalidValue (several), kTooLarge,
+/// kStorage.
+tin::base::Result<std::filesystem::path> unpack_shapefile(const ImportTask& task);
+
+/// Takes the note on the lattice that a file may have in a comment. Errors: kMalformed.
+tin::base::Result<void> take_note(RawPoints& raw, std::string_view note);
+
+/// Puts points on the lattice that the file notes, unless the client asks for another CRS or resolution, or
+/// not all are on it; else fits a frame to the points and snaps them to it. Errors: kInvalidValue when there
+/// are none; as fit_points().
 tin::base::Result<Import> place_points(const ImportTask& task, RawPoints raw);
 
 }  // namespace server::gdal

@@ -14,9 +14,12 @@
 namespace server::gdal {
 namespace {
 
-constexpr std::array<const char*, 6> kRasterDrivers{"GTiff",   "SRTMHGT", "AAIGrid",
-                                                    "USGSDEM", "DTED",    nullptr};
-constexpr std::array<const char*, 4> kVectorDrivers{"GeoJSON", "GPKG", "FlatGeobuf", nullptr};
+constexpr std::array<const char*, 10> kRasterDrivers{"GTiff", "SRTMHGT", "AAIGrid", "USGSDEM", "DTED",
+                                                     "GSAG",  "GSBG",    "GS7BG",   "BT",      nullptr};
+constexpr std::array<const char*, 5> kVectorDrivers{"GeoJSON", "GPKG", "FlatGeobuf", "ESRI Shapefile",
+                                                    nullptr};
+/// Can only write.
+constexpr const char* kCogDriver = "COG";
 constexpr GIntBig kBlockCacheBytes = GIntBig{64} << 20;
 
 /// A GeoJSON file may name its CRS by a link, and GDAL would follow it. (Without a result it would go on and
@@ -45,14 +48,20 @@ void configure() {
   GDALRegister_AAIGrid();
   GDALRegister_USGSDEM();
   GDALRegister_DTED();
+  GDALRegister_GSAG();
+  GDALRegister_GSBG();
+  GDALRegister_GS7BG();
+  GDALRegister_BT();
+  GDALRegister_COG();
   RegisterOGRGeoJSON();
   RegisterOGRGeoPackage();
   RegisterOGRFlatGeobuf();
+  RegisterOGRShape();
   // A driver may bring others along; keep only what the lists name.
   GDALDriverManager* manager = GetGDALDriverManager();
   for (int i = manager->GetDriverCount() - 1; i >= 0; --i) {
     GDALDriver* driver = manager->GetDriver(i);
-    bool allowed = false;
+    bool allowed = EQUAL(kCogDriver, driver->GetDescription());
     for (const char* name : raster_drivers()) allowed = allowed || EQUAL(name, driver->GetDescription());
     for (const char* name : vector_drivers()) allowed = allowed || EQUAL(name, driver->GetDescription());
     if (!allowed) manager->DeregisterDriver(driver);

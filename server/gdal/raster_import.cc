@@ -35,6 +35,14 @@ const char* driver_name(Format format) {
       return "USGSDEM";
     case Format::kDted:
       return "DTED";
+    case Format::kSurferText:
+      return "GSAG";
+    case Format::kSurferBinary:
+      return "GSBG";
+    case Format::kSurfer7:
+      return "GS7BG";
+    case Format::kVtpTerrain:
+      return "BT";
     default:
       return "GTiff";
   }

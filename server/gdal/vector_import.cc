@@ -1,4 +1,5 @@
-// Points of GeoJSON, GeoPackage and FlatGeobuf files.
+// Points of GeoJSON, GeoPackage, FlatGeobuf and shape files.
+#include <cpl_conv.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
@@ -6,6 +7,8 @@
 #include <cmath>
 #include <memory>
 
+#include "proto/formats/byte_reader.h"
+#include "proto/formats/frame_note.h"
 #include "server/gdal/import_internal.h"
 #include "server/gdal/library.h"
 
@@ -21,13 +24,29 @@ using Dataset = std::unique_ptr<GDALDataset, GDALDatasetUniquePtrDeleter>;
 
 const char* driver_name(Format format) {
   if (format == Format::kGeoPackage) return "GPKG";
+  if (format == Format::kShapefile || format == Format::kZippedShapefile) return "ESRI Shapefile";
   return format == Format::kFlatGeobuf ? "FlatGeobuf" : "GeoJSON";
 }
 
+/// While it lives, a shapefile that came without its index is read all the same.
+class IndexMadeAnew {
+ public:
+  IndexMadeAnew() { CPLSetThreadLocalConfigOption("SHAPE_RESTORE_SHX", "YES"); }
+  ~IndexMadeAnew() { CPLSetThreadLocalConfigOption("SHAPE_RESTORE_SHX", nullptr); }
+  IndexMadeAnew(const IndexMadeAnew&) = delete;
+  IndexMadeAnew& operator=(const IndexMadeAnew&) = delete;
+};
+
 Result<Dataset> open(const ImportTask& task, const Complaints& complaints) {
+  std::filesystem::path file = task.workspace.file();
+  if (task.format == Format::kZippedShapefile) {
+    auto unpacked = unpack_shapefile(task);
+    if (!unpacked) return unpacked.error();
+    file = *std::move(unpacked);
+  }
+  const IndexMadeAnew index;
   const char* const drivers[] = {driver_name(task.format), nullptr};
-  Dataset dataset(
-      GDALDataset::Open(task.workspace.file().c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
+  Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
   if (!dataset) {
     return error(Code::kMalformed, "The " + std::string(format_title(task.format)) +
                                        " file cannot be read, or it holds no features" +
@@ -135,6 +154,20 @@ class PointReader {
   std::vector<RawPoint> points_;
 };
 
+/// What a file of ours notes of the lattice: as metadata, or as a member of the GeoJSON.
+std::string note_of(const ImportTask& task, OGRLayer& layer) {
+  constexpr std::size_t kHead = 64 * 1024;
+  if (task.format == Format::kGeoJson) {
+    std::string head(kHead, '\0');
+    proto::formats::FileReader file(task.workspace.file());
+    head.resize(file.read(head.data(), head.size()));
+    return std::string(proto::formats::find_frame_member(head));
+  }
+  const std::string name(proto::formats::kFrameNoteName);
+  const char* const note = layer.GetMetadataItem(name.c_str());
+  return note == nullptr ? "" : note;
+}
+
 }  // namespace
 
 Result<RawPoints> read_vector_points(const ImportTask& task) {
@@ -160,7 +193,14 @@ Result<RawPoints> read_vector_points(const ImportTask& task) {
     return error(Code::kMalformed, "The file is damaged, or says what we do not accept" +
                                        complaints.aside(task.workspace.folder()));
   }
-  return RawPoints{reader.take(), *std::move(crs), driver_name(task.format)};
+  RawPoints raw;
+  raw.points = reader.take();
+  raw.crs = *std::move(crs);
+  raw.driver = driver_name(task.format);
+  if (const std::string note = note_of(task, **layer); !note.empty()) {
+    if (auto taken = take_note(raw, note); !taken) return taken.error();
+  }
+  return raw;
 }
 
 }  // namespace server::gdal

@@ -154,8 +154,9 @@ TEST_F(ExportTest, OgrinfoCountsTheFeaturesOfAGeojson) {
   for (const auto& [collection, count, geometry] :
        std::vector<std::tuple<std::string, std::string, std::string>>{
            {"vertices", "vertexCount", "3D Point"}, {"triangles", "triangleCount", "3D Polygon"}}) {
-    const std::string file = save(served_->http().get("/tins/dem/export?f=geojson&collection=" + collection),
-                                  collection + ".geojson");
+    const std::string file =
+        save(served_->http().get("/tins/dem/export?f=geojson&voids=fill&collection=" + collection),
+             collection + ".geojson");
     const auto said = run({"ogrinfo", "-ro", "-so", "-al", file});
     EXPECT_EQ(said.status, 0) << said.err;
     EXPECT_NE(said.out.find("Feature Count: " + tin.at(count).dump() + "\n"), std::string::npos) << said.out;

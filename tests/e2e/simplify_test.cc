@@ -38,7 +38,8 @@ TEST_P(SimplifyTest, EverySampleIsWithinTheToleranceOfTheNewTin) {
     EXPECT_EQ(made.at("vertexCount"), result.at("verticesAfter"));
     EXPECT_LT(made.at("vertexCount"), before.at("vertexCount"));
     const Json triangles = served_->get("/tins/" + id + "/export?f=geojson&crs=" + crs);
-    EXPECT_EQ(triangles.at("features").size(), made.at("triangleCount"));
+    // Those over voids are left out, and yet every valid sample is covered.
+    EXPECT_LE(triangles.at("features").size(), made.at("triangleCount"));
     const Misses misses = compare(dem, triangles, tolerance);
     EXPECT_EQ(misses.strangers, 0U) << "a vertex is no sample";
     EXPECT_EQ(misses.uncovered, 0U) << "a sample lies outside the hull";

@@ -74,6 +74,21 @@ TEST(GeoJsonTest, NothingAtAllIsAnEmptyCollection) {
   EXPECT_TRUE(tests_support::schema_violations("FeatureCollection", out).empty());
 }
 
+TEST(GeoJsonTest, ExactCoordinatesAndTheLatticeTheyLieOn) {
+  std::string out;
+  GeoJsonWriter writer(out, Coordinates::kExact);
+  CollectionHead head;
+  head.frame_note = R"({"crs":""})";
+  writer.begin(head);
+  writer.vertex(id(1), {1.0 / 3, 1e-12, 2});
+  writer.end();
+  EXPECT_EQ(out, R"({"type":"FeatureCollection","tinsmith-frame":{"crs":""},"features":[
+{"type":"Feature","id":1,"geometry":{"type":"Point","coordinates":[0.3333333333333333,1e-12,2]},"properties":{"z":2}}
+]}
+)");
+  EXPECT_TRUE(tests_support::schema_violations("FeatureCollection", out).empty());
+}
+
 TEST(GeoJsonTest, ATriangleHasTheSameBytesFromAnyCorner) {
   const auto written = [](std::size_t first) {
     const std::array<VertexId, 3> ids = {id(30), id(2), id(17)};

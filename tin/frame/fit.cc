@@ -157,6 +157,24 @@ base::Result<Frame> fit_points(const Extent& extent, const GroundScale& scale, d
   return frame;
 }
 
+base::Result<void> check_frame(const Frame& frame, const Extent& extent) {
+  if (auto bad = check_extent(extent, GroundScale{})) return *std::move(bad);
+  for (const Axis* axis : {&frame.x, &frame.y}) {
+    if (!std::isfinite(axis->origin) || !std::isfinite(axis->unit) || !std::isfinite(axis->step()))
+      return error(Code::kNotFinite, "An axis of the lattice is not finite");
+    if (!(axis->unit > 0) || axis->parts < 1 || !(axis->step() > 0) ||
+        std::abs(axis->origin) > kLargestCoordinate)
+      return error(Code::kInvalidValue, "An axis of the lattice is of no use");
+  }
+  for (const double x : {extent.min_x, extent.max_x}) {
+    for (const double y : {extent.min_y, extent.max_y}) {
+      if (const auto at = frame.to_lattice(x, y); !at) return at.error();
+    }
+  }
+  if (auto bad = check_steps(frame, extent)) return *std::move(bad);
+  return {};
+}
+
 base::Result<Frame> fit_raster(const RasterShape& raster, const GroundScale& scale, double resolution_x,
                                double resolution_y) {
   if (raster.width < 1 || raster.height < 1 || !(raster.pixel_x > 0) || !(raster.pixel_y > 0)) {

@@ -72,6 +72,11 @@ struct Extent {
 base::Result<Frame> fit_points(const Extent& extent, const GroundScale& scale, double resolution_x,
                                double resolution_y);
 
+/// Whether data of this extent can lie on a frame that came from outside: its axes are finite and positive, all of
+/// the extent is on the lattice, and doubles can tell the steps apart. Errors: kNotFinite, kInvalidValue,
+/// kOutsideLattice.
+base::Result<void> check_frame(const Frame& frame, const Extent& extent);
+
 /// A raster of `width` x `height` pixels of the given size in CRS units (> 0), north-up; the centre of pixel
 /// (0, 0), the upper left one, is at (x0, y0).
 struct RasterShape {

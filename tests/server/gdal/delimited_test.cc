@@ -1,5 +1,6 @@
 #include <fstream>
 
+#include "proto/formats/byte_reader.h"
 #include "server/gdal/delimited_internal.h"
 #include "tests/server/gdal/support.h"
 
@@ -100,7 +101,8 @@ TEST_F(DelimitedTest, HoldsItsLimits) {
   EXPECT_EQ(read("1 2 3\n4 5 6\n", options).placements.size(), 2U);
   options.max_samples = 1;
   EXPECT_EQ(refuse("1 2 3\n4 5 6\n", options).code, Code::kTooLarge);
-  EXPECT_EQ(refuse("1 2 3\n" + std::string(LineReader::kLongestLine + 1, ' ')).code, Code::kMalformed);
+  EXPECT_EQ(refuse("1 2 3\n" + std::string(proto::formats::LineReader::kLongestLine + 1, ' ')).code,
+            Code::kMalformed);
 }
 
 TEST_F(DelimitedTest, ManyPointsKeepTheirOrderAndCanBeCancelled) {
@@ -133,7 +135,8 @@ TEST(LineReaderTest, JoinsLinesAcrossItsBuffer) {
     for (int i = 0; i < 300000; ++i) out << "line " << i << "\n";
     out << "last";
   }
-  LineReader lines(name);
+  proto::formats::FileReader file(name);
+  proto::formats::LineReader lines(file);
   for (int i = 0; i < 300000; ++i) {
     const auto line = lines.next();
     ASSERT_TRUE(line.has_value());

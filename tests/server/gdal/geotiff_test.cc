@@ -1,5 +1,6 @@
 #include "server/gdal/geotiff.h"
 
+#include <gdal_priv.h>
 #include <sys/resource.h>
 
 #include <cmath>
@@ -217,6 +218,34 @@ TEST_F(GeoTiffTest, RealTerrainComesBackAsItWas) {
     if (!upload) GTEST_SKIP() << "the real data is not here";
     expect_round_trip(*upload, path("out.tif"), named(name), authority);
   }
+}
+
+TEST_F(GeoTiffTest, ACloudOptimisedOneHasTheSamePixelsAndOverviews) {
+  const RasterSpec wanted = spec(1500, 1100);
+  ASSERT_TRUE(write_geotiff(path("plain.tif"), wanted, fill, nullptr).ok());
+  for (const char* name : {"cog.tif", "again.tif"}) {
+    ASSERT_TRUE(write_cog(path(name), wanted, fill, nullptr).ok());
+  }
+  const ReadBack plain = read_back(path("plain.tif")), cog = read_back(path("cog.tif"));
+  EXPECT_EQ(cog.geotransform, plain.geotransform);
+  EXPECT_EQ(cog.authority, plain.authority);
+  EXPECT_EQ(cog.nodata, plain.nodata);
+  EXPECT_EQ(cog.unit, plain.unit);
+  EXPECT_TRUE(cog.values == plain.values);
+  EXPECT_TRUE(bytes("cog.tif") == bytes("again.tif"));
+  const GDALDatasetUniquePtr dataset(GDALDataset::Open(path("cog.tif").c_str(), GDAL_OF_RASTER));
+  EXPECT_EQ(dataset->GetRasterBand(1)->GetOverviewCount(), 2);
+  EXPECT_EQ(std::string(dataset->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE")), "COG");
+  EXPECT_EQ(files_left(), 3U);
+}
+
+TEST_F(GeoTiffTest, ACloudOptimisedOneThatFailsLeavesNoFile) {
+  const auto failing = [](std::int64_t, std::span<double>) -> Result<void> {
+    return tin::base::error(Code::kCancelled, "enough");
+  };
+  EXPECT_EQ(write_cog(path("cog.tif"), spec(10, 10), failing, nullptr).error().code, Code::kCancelled);
+  EXPECT_EQ(write_cog(path("none/cog.tif"), spec(10, 10), fill, nullptr).error().code, Code::kStorage);
+  EXPECT_EQ(files_left(), 0U);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <gdal_priv.h>
+
 #include <cmath>
 #include <limits>
 
@@ -214,6 +216,47 @@ TEST_F(RasterImportTest, ReportsProgressAndStopsWhenAsked) {
   progress.cancel();
   EXPECT_EQ(import_file(tiff({}), {}, &progress).error().code, Code::kCancelled);
   EXPECT_EQ(files_left(), 1U);
+}
+
+/// Formats without a CRS, and with a blanking value of their own.
+TEST_F(RasterImportTest, ReadsSurferGridsAndBinaryTerrain) {
+  TiffSpec spec;
+  spec.nodata = -9999;
+  spec.value = [](int column, int row) { return column == 1 && row == 1 ? -9999.0 : 10.0 * row + column; };
+  make_tiff(path("source.tif"), spec);
+  const GDALDatasetUniquePtr source(GDALDataset::Open(path("source.tif").c_str(), GDAL_OF_RASTER));
+  for (const char* driver : {"GSAG", "GSBG", "GS7BG", "BT"}) {
+    SCOPED_TRACE(driver);
+    const auto file = path(std::string("upload-") + driver);
+    GDALDatasetUniquePtr copy;
+    if (driver == std::string("BT")) {
+      copy.reset(GetGDALDriverManager()->GetDriverByName(driver)->Create(file.c_str(), 4, 3, 1, GDT_Float32,
+                                                                         nullptr));
+      ASSERT_TRUE(copy);
+      std::array<double, 6> transform = spec.geotransform;
+      copy->SetGeoTransform(transform.data());
+      std::array<float, 12> values{};
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(10 * (i / 4) + i % 4);
+      ASSERT_EQ(copy->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 4, 3, values.data(), 4, 3, GDT_Float32, 0, 0,
+                                                 nullptr),
+                CE_None);
+    } else {
+      copy.reset(GetGDALDriverManager()->GetDriverByName(driver)->CreateCopy(
+          file.c_str(), source.get(), FALSE, nullptr, nullptr, nullptr));
+    }
+    ASSERT_TRUE(copy);
+    copy.reset();
+    const Import import = imported(file);
+    EXPECT_EQ(import.driver, driver);
+    ASSERT_TRUE(import.grid);
+    EXPECT_EQ(import.grid->width, 4);
+    EXPECT_EQ(import.placements.size(), driver == std::string("BT") ? 12U : 11U);
+    EXPECT_EQ(import.frame.x.world(import.placements[0].at.x), 500005);
+    EXPECT_NEAR(import.placements.back().z, 23, 1e-5);
+    ImportOptions options;
+    options.max_pixels = 11;
+    EXPECT_EQ(import_error(file, options).code, Code::kTooLarge);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+// Uploads of points and meshes over HTTP: their parameters, and what is refused.
+#include <gtest/gtest.h>
+
+#include "tests/contract/contract.h"
+#include "tests/contract/test_server.h"
+#include "tests/proto/formats/las_file.h"
+
+namespace tests::contract {
+namespace {
+
+using formats::las_file;
+
+class ImportsTest : public testing::Test {
+ protected:
+  RawAnswer upload(const std::string& query, const std::string& body) {
+    return server_.upload("/tins" + query, "application/octet-stream", body);
+  }
+  TestServer server_;
+};
+
+const std::string kCloud = las_file({.points = {{0, 0, 100, 2, false},
+                                                {900, 0, 200, 2, false},
+                                                {0, 900, 300, 2, false},
+                                                {500, 500, 4000, 5, false}}});
+
+TEST_F(ImportsTest, TheGroundOfACloud) {
+  ASSERT_EQ(upload("?id=all&crs=EPSG:32632", kCloud).status, 201);
+  EXPECT_EQ(server_.tin("all").at("vertexCount"), 4);
+  ASSERT_EQ(upload("?id=ground&crs=EPSG:32632&class=2", kCloud).status, 201);
+  EXPECT_EQ(server_.tin("ground").at("vertexCount"), 3);
+  EXPECT_EQ(server_.tin("ground").at("zRange"), (Json{1, 3}));
+  ASSERT_EQ(upload("?id=both&class=2,5", kCloud).status, 201);
+  EXPECT_EQ(server_.tin("both").at("vertexCount"), 4);
+}
+
+TEST_F(ImportsTest, ClassesThatAreNoneChangeNothing) {
+  const std::string before = server_.state();
+  for (const auto& [query, body, status] : std::vector<std::tuple<std::string, std::string, int>>{
+           {"?class=x", kCloud, 400},
+           {"?class=", kCloud, 400},
+           {"?class=2,", kCloud, 400},
+           {"?class=-1", kCloud, 400},
+           {"?class=256", kCloud, 422},
+           {"?class=77", kCloud, 422},
+           {"?class=2", "x,y,z\n1,2,3\n", 422},
+           {"?format=las", "x,y,z\n1,2,3\n", 415},
+           {"?layer=none", "<LandXML><Surfaces/></LandXML>", 422},
+           {"", "<LandXML><Surfaces/></LandXML>", 422},
+           {"", "v 1 2\n", 400},
+           {"", "\x89HDF", 415},
+           {"?format=obj", "v 1 2\n", 400},
+           {"", "<!DOCTYPE a [<!ENTITY b \"c\">]><LandXML/>", 415}}) {
+    SCOPED_TRACE(query + " " + body.substr(0, 20));
+    const RawAnswer answer = upload(query, body);
+    EXPECT_EQ(answer.status, status) << answer.body;
+  }
+  std::string laz = kCloud;
+  laz[104] = static_cast<char>(laz[104] | 0x80);
+  const RawAnswer declined = upload("", laz);
+  EXPECT_EQ(declined.status, 415);
+  EXPECT_NE(declined.body.find("LAZ"), std::string::npos);
+  EXPECT_EQ(server_.state(), before);
+  EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
+}
+
+}  // namespace
+}  // namespace tests::contract
