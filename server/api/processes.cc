@@ -12,8 +12,8 @@ using tin::base::error;
 
 namespace {
 
-tin::base::Error no_such_process(std::string_view id) {
-  return error(Code::kNotFound, "There is no process \"" + std::string(id) + "\".");
+Response no_such_process(std::string_view id) {
+  return processes_exception(error(Code::kNotFound, "There is no process \"" + std::string(id) + "\"."), "no-such-process");
 }
 
 Result<Response> list(Context&, const Request&) {

@@ -18,6 +18,7 @@
 #include <variant>
 #include <vector>
 
+#include "server/app/changed_areas.h"
 #include "server/app/fair_mutex.h"
 #include "server/app/version.h"
 #include "server/store/store.h"
@@ -96,6 +97,9 @@ class Tin {
   Version version() const;
   Summary summary() const;
 
+  /// Where its latest revisions changed it.
+  const ChangedAreas& changed_areas() const { return changed_areas_; }
+
   /// Remembers a version for a while, so that pages can go on from it when edits arrive; see page_version().
   void keep_for_pages(const Version& version) { kept_.keep(version); }
   /// Frees what was remembered too long ago. To be called now and then.
@@ -151,6 +155,7 @@ class Tin {
   mutable std::mutex cache_mutex_;
   mutable std::optional<Summary> summary_;
   KeptVersions kept_;
+  ChangedAreas changed_areas_;
 };
 
 }  // namespace server::app
