@@ -264,6 +264,8 @@ class AnswersTest : public testing::Test {
     const auto to = [](const std::string& goal) { return R"({"inputs":{"tin":"grid",)" + goal + "}}"; };
     expect({{{"GET", "/processes"}, 200},
             {{"GET", "/processes?a=1"}, 400},
+            {{"GET", "/processes?limit=1"}, 200},
+            {{"GET", "/processes?limit=0"}, 400},
             {{"GET", "/processes/simplify"}, 200},
             {{"GET", "/processes/simplify?a=1"}, 400},
             {{"GET", "/processes/none"}, 404},
