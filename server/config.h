@@ -30,6 +30,9 @@ struct LimitConfig {
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;
   std::int64_t positions_per_request = 1'000'000;
+  std::int64_t polygon_positions = 5000;       // of a polygon that is asked about
+  std::int64_t contour_levels = 10'000;        // per request
+  std::int64_t answer_positions = 1'000'000;   // of a profile, and of contours that a process returns
   std::int64_t uploads_at_once = 2;     // files being read beside the jobs
   std::int64_t exports_at_once = 2;     // rasters being made
   std::int64_t export_seconds = 120;    // for making one

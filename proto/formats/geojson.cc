@@ -47,8 +47,10 @@ std::string feature_with_links(std::string_view feature, std::span<const Link> l
   return out + "," + json.take().substr(1);
 }
 
-GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates)
-    : out_(out), decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals) {}
+GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates, bool continued)
+    : out_(out),
+      decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals),
+      first_(!continued) {}
 
 void GeoJsonWriter::begin(const CollectionHead& head) {
   JsonWriter json;
@@ -111,6 +113,18 @@ void GeoJsonWriter::edge(const std::array<VertexId, 2>& ids, const std::array<Po
   append_integer(out_, ids[1].value());
   out_ += R"(],"hull":)";
   out_ += hull ? "true}}" : "false}}";
+}
+
+void GeoJsonWriter::contour(double z, bool closed, std::span<const Position2> at) {
+  separate();
+  out_ += R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[)";
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) out_ += ',';
+    append_position({at[i].x, at[i].y, z});
+  }
+  out_ += R"(]},"properties":{"elevation":)";
+  append_shortest(out_, z);
+  out_ += closed ? R"(,"closed":true}})" : R"(,"closed":false}})";
 }
 
 void GeoJsonWriter::end() {

@@ -36,7 +36,8 @@ struct CollectionHead {
 /// Appends to a string that the caller may empty between any two calls.
 class GeoJsonWriter {
  public:
-  GeoJsonWriter(std::string& out, Coordinates coordinates);
+  /// `continued`: features were written already, by another writer.
+  GeoJsonWriter(std::string& out, Coordinates coordinates, bool continued = false);
 
   void begin(const CollectionHead& head);
   /// A Point with the vertex's id as its id. Requires: finite coordinates.
@@ -46,6 +47,8 @@ class GeoJsonWriter {
   void triangle(const std::array<VertexId, 3>& ids, const std::array<Position, 3>& corners);
   /// A LineString of two positions whose id is "a-b". `hull`: nothing lies on one of its sides.
   void edge(const std::array<VertexId, 2>& ids, const std::array<Position, 2>& ends, bool hull);
+  /// A LineString of `z` with the properties "elevation" and "closed". Requires: two positions or more, finite.
+  void contour(double z, bool closed, std::span<const Position2> at);
   void end();
 
  private:
@@ -54,7 +57,7 @@ class GeoJsonWriter {
 
   std::string& out_;
   int decimals_;
-  bool first_ = true;
+  bool first_;
 };
 
 /// The id that triangle() writes.

@@ -11,6 +11,10 @@ http::Router make_router(Context& context) {
   add_tin_service(router, context);
   add_collections(router, context);
   add_coverage(router, context);
+  add_slope(router, context);
+  add_profile(router, context);
+  add_contours(router, context);
+  add_volume(router, context);
   add_features(router, context);
   add_feature_edits(router, context);
   add_tiles(router, context);

@@ -5,6 +5,7 @@
 #include "server/api/routes.h"
 #include "server/api/tin_document.h"
 #include "server/api/upload.h"
+#include "server/app/source.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -168,8 +169,11 @@ Result<Response> create_from_json(Context& context, const Request& request) {
   }
   auto terrain = Terrain::build(*frame, placements, message->duplicates);
   if (!terrain) return within("/vertices", terrain.error());
-  auto made = context.catalogue.create(
-      {message->id, message->title.value_or(""), std::move(*terrain), message->duplicates, open});
+  std::string source;
+  if (!placements.empty())
+    source = app::attach_source(*terrain, app::vertices_as_source(*terrain), app::Completeness::kAllSamples);
+  auto made = context.catalogue.create({message->id, message->title.value_or(""), std::move(*terrain),
+                                        message->duplicates, open, std::move(source)});
   if (!made) return made.error();
   return created_answer(**made, request);
 }
@@ -196,7 +200,7 @@ void add_tins(http::Router& router, Context& context) {
   router.add({.method = Method::kPost,
               .pattern = "/tins",
               .query = {"id", "title", "crs", "resolution", "layer", "z-field", "vertical-unit", "duplicates",
-                        "format"},
+                        "format", "tolerance", "effort"},
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});

@@ -68,6 +68,7 @@ Result<void> Catalogue::load(const store::TinRecord& record) {
     const auto change = tin::codec::decode_change(row.record);
     if (!change) return change.error();
     if (auto replayed = state->terrain.replay(*change); !replayed) return replayed;
+    state->terrain.amend(*change);
     state->revision = row.revision;
   }
   obs::log_info("tin_loaded", {{"tin", record.id},
@@ -126,7 +127,7 @@ Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
                  tin.duplicates,
                  tin.open_resolution,
                  1};
-  const auto stored = store_->create_tin(state.record, state.revision, checkpoint);
+  const auto stored = store_->create_tin(state.record, state.revision, checkpoint, tin.source);
   const std::lock_guard lock(mutex_);
   being_created_.erase(id);
   if (!stored) return stored.error();

@@ -7,6 +7,7 @@
 #include "server/obs/log.h"
 #include "tin/codec/change.h"
 #include "tin/codec/checkpoint.h"
+#include "tin/codec/source.h"
 
 namespace server::app {
 
@@ -19,8 +20,8 @@ using tin::terrain::Terrain;
 
 namespace {
 
-constexpr std::size_t kSmallRemoval = 20'000;  // vertices that are removed one by one while readers wait
-constexpr int kAttempts = 3;                   // to land a large removal without making editors wait
+constexpr std::size_t kSmallThinning = 20'000;  // vertices that are changed one by one while readers wait
+constexpr int kAttempts = 3;                    // to land a large thinning without making editors wait
 
 std::string place(std::size_t index) {
   return "/" + std::to_string(index);
@@ -72,24 +73,73 @@ class UndoUnlessKept {
   bool kept_ = false;
 };
 
-struct Removal {
-  std::vector<VertexId> ids;
+/// A simplification as it fits the present vertices.
+struct Fitting {
+  std::vector<VertexId> removed;             // ascending
+  std::vector<tin::terrain::Vertex> changed;  // with their new heights
+  std::vector<tin::terrain::Vertex> added;    // with ids of their own
   Change change;
 };
 
-/// Of `ids`, the vertices that are in `now` as they were in `seen`.
-Removal removal_of_unchanged(const Terrain& seen, const Terrain& now, std::span<const VertexId> ids) {
-  Removal removal;
-  for (const VertexId id : ids) {
-    const auto present = now.vertex(id), then = seen.vertex(id);
-    if (!present || !then || present->at != then->at || present->z != then->z) continue;
-    removal.ids.push_back(id);
-    removal.change.steps.push_back({id, tin::terrain::Placement{present->at, present->z}, std::nullopt});
+bool is_unchanged(const Terrain& seen, const Terrain& now, VertexId id) {
+  const auto present = now.vertex(id), then = seen.vertex(id);
+  return present && then && present->at == then->at && present->z == then->z;
+}
+
+bool is_free(const Terrain& terrain, tin::exact::Point p) {
+  const auto& mesh = terrain.mesh();
+  if (mesh.dimension() < 2) {
+    const auto line = mesh.line();
+    return std::none_of(line.begin(), line.end(), [&](auto v) { return mesh.point(v) == p; });
   }
-  return removal;
+  return terrain.triangulation().locate(p).kind != tin::delaunay::Location::Kind::kOnVertex;
+}
+
+/// What of a thinning of `seen` is possible now. Vertices go before others come: a position is free by then.
+Fitting fit(const Terrain& seen, const Terrain& now, const Thinning& thinning) {
+  using tin::terrain::Placement;
+  Fitting fitting;
+  fitting.change.cause = tin::terrain::Cause::kSimplification;
+  auto& steps = fitting.change.steps;
+  for (const VertexId id : thinning.removed) {
+    if (!is_unchanged(seen, now, id)) continue;
+    const auto vertex = now.vertex(id);
+    fitting.removed.push_back(id);
+    steps.push_back({id, Placement{vertex->at, vertex->z}, std::nullopt});
+  }
+  for (const tin::terrain::Vertex& vertex : thinning.reset) {
+    if (!is_unchanged(seen, now, vertex.id)) continue;
+    steps.push_back({vertex.id, Placement{vertex.at, now.vertex(vertex.id)->z}, Placement{vertex.at, vertex.z}});
+    fitting.changed.push_back(vertex);
+  }
+  VertexId next = now.next_id();
+  for (const Placement& sample : thinning.inserted) {
+    if (!is_free(now, sample.at)) continue;
+    fitting.added.push_back({next, sample.at, sample.z});
+    steps.push_back({next, std::nullopt, sample});
+    next = VertexId(next.value() + 1);
+  }
+  return fitting;
+}
+
+/// `terrain` with the fitting done, built anew.
+Terrain rebuilt(const Terrain& terrain, const Fitting& fitting) {
+  Terrain rest = terrain.replaced(fitting.removed, fitting.added);
+  Change heights;
+  for (const tin::terrain::Vertex& vertex : fitting.changed) {
+    heights.steps.push_back({vertex.id, tin::terrain::Placement{vertex.at, rest.vertex(vertex.id)->z},
+                             tin::terrain::Placement{vertex.at, vertex.z}});
+  }
+  TIN_CHECK(rest.replay(heights).ok());
+  rest.amend(fitting.change);
+  return rest;
 }
 
 }  // namespace
+
+Terrain thinned(const Terrain& terrain, const Thinning& thinning) {
+  return rebuilt(terrain, fit(terrain, terrain, thinning));
+}
 
 Tin::Tin(TinState state, store::Store& store, std::size_t max_vertices)
     : record_(std::move(state.record)),
@@ -170,7 +220,7 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::span<const std::
   UndoUnlessKept undo(terrain, *applied);
   Result<void> kept;
   if (terrain.vertex_count() > max_vertices_) {
-    kept = error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices.");
+    kept = too_many_vertices();
   } else if (fitted) {
     kept = store_.put_checkpoint(id(), revision_, empty_checkpoint);
   }
@@ -178,6 +228,7 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::span<const std::
   if (!kept) return kept.error();
   undo.keep();
   changed_areas_.note(revision_, tin::query::touched_area(terrain, applied->change));
+  terrain.amend(applied->change);
   if (fitted) {
     replace_terrain(std::move(fitted));
     open_resolution_.reset();
@@ -191,6 +242,10 @@ Result<void> Tin::retire() {
   auto removed = store_.remove_tin(id());
   retired_ = removed.ok();
   return removed;
+}
+
+tin::base::Error Tin::too_many_vertices() const {
+  return error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices.");
 }
 
 /// Writes the next revision, and counts it when it is durable.
@@ -228,42 +283,69 @@ Result<std::shared_ptr<Terrain>> Tin::fit_open_frame(std::span<const WorldEdit> 
   return std::make_shared<Terrain>(frame);
 }
 
-Result<Removed> Tin::remove_vertices(const Version& seen, std::span<const VertexId> ids,
-                                     const store::RevisionInfo& info) {
+Result<Landed> Tin::land(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const Version base = attempt == 0 ? seen : version();
-    const Removal removal = removal_of_unchanged(*seen.terrain, *base.terrain, ids);
-    if (removal.ids.size() <= kSmallRemoval) break;
-    auto rest = std::make_shared<Terrain>(base.terrain->without(removal.ids));
+    const Fitting fitting = fit(*seen.terrain, *base.terrain, thinning);
+    if (fitting.change.steps.size() <= kSmallThinning) break;
+    auto rest = std::make_shared<Terrain>(rebuilt(*base.terrain, fitting));
+    if (rest->vertex_count() > max_vertices_) return too_many_vertices();
     std::unique_lock lock(mutex_);
     if (retired_) return gone(id());
     if (base.revision != revision_) continue;
-    if (auto durable = journal(removal.change, info); !durable) return durable.error();
+    if (auto durable = journal(fitting.change, info); !durable) return durable.error();
     replace_terrain(std::move(rest));
-    const Removed removed{revision_, terrain_->vertex_count(), base.revision != seen.revision};
+    const Landed landed{revision_, terrain_->vertex_count(), base.revision != seen.revision};
     lock.unlock();
     write_checkpoint();
-    return removed;
+    return landed;
   }
-  return remove_in_place(seen, ids, info);
+  return land_in_place(seen, thinning, info);
 }
 
 /// Few vertices, or editors who were quicker each time: now they wait.
-Result<Removed> Tin::remove_in_place(const Version& seen, std::span<const VertexId> ids,
-                                     const store::RevisionInfo& info) {
+Result<Landed> Tin::land_in_place(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info) {
   std::unique_lock lock(mutex_);
   if (retired_) return gone(id());
   const bool edited_meanwhile = seen.revision != revision_;
-  const Removal removal = removal_of_unchanged(*seen.terrain, *terrain_, ids);
-  if (!removal.ids.empty()) {
+  const Fitting fitting = fit(*seen.terrain, *terrain_, thinning);
+  const Change& change = fitting.change;
+  if (terrain_->vertex_count() - fitting.removed.size() + fitting.added.size() > max_vertices_)
+    return too_many_vertices();
+  if (!change.steps.empty()) {
     own_terrain();
-    if (auto durable = journal(removal.change, info); !durable) return durable.error();
-    TIN_CHECK(terrain_->replay(removal.change).ok());
+    if (auto durable = journal(change, info); !durable) return durable.error();
+    TIN_CHECK(terrain_->replay(change).ok());
+    terrain_->amend(change);
   }
-  const Removed removed{revision_, terrain_->vertex_count(), edited_meanwhile};
+  const Landed landed{revision_, terrain_->vertex_count(), edited_meanwhile};
   lock.unlock();
-  if (removal.ids.size() > kSmallRemoval) write_checkpoint();
-  return removed;
+  if (change.steps.size() > kSmallThinning) write_checkpoint();
+  return landed;
+}
+
+Result<std::string> Tin::source_bytes() const {
+  auto bytes = store_.load_source(id());
+  const std::shared_lock lock(mutex_);
+  if (retired_) return gone(id());  // what was read may be another TIN's by now
+  return bytes;
+}
+
+Result<std::shared_ptr<const tin::terrain::SourceSamples>> Tin::source() const {
+  using Source = std::shared_ptr<const tin::terrain::SourceSamples>;
+  const auto [kind, grid] = read([](const Terrain& terrain, std::uint64_t) {
+    return std::pair(terrain.amendments().kind(), terrain.shared_source_grid());
+  });
+  if (kind == tin::terrain::SourceKind::kNone) return Source();
+  const std::lock_guard reading(source_mutex_);
+  if (Source present = source_.lock()) return present;
+  const auto bytes = source_bytes();
+  if (!bytes) return bytes.error();
+  auto decoded = tin::codec::decode_source(*bytes, kind == tin::terrain::SourceKind::kRaster ? grid : nullptr);
+  if (!decoded) return decoded.error();
+  Source source = std::make_shared<const tin::terrain::SourceSamples>(*std::move(decoded));
+  source_ = source;
+  return source;
 }
 
 /// Makes the next start quicker. The journal holds everything, so failing is no loss.
@@ -285,6 +367,7 @@ std::string Tin::encode(const Terrain& terrain, tin::terrain::Duplicates duplica
   checkpoint.open_resolution = open_resolution;
   checkpoint.vertices = terrain.vertices_by_id();
   checkpoint.grid = terrain.shared_source_grid();
+  checkpoint.amendments = terrain.amendments();
   return tin::codec::encode_checkpoint(checkpoint);
 }
 
@@ -297,6 +380,7 @@ Result<TinState> Tin::decode(const store::TinRecord& record, std::string_view by
     return error(Code::kStorage, "The checkpoint's digest is not that of its vertices.");
   }
   terrain->set_source_grid(checkpoint->grid);
+  terrain->set_amendments(std::move(checkpoint->amendments));
   return TinState{record, std::move(*terrain), checkpoint->duplicates, checkpoint->open_resolution,
                   checkpoint->revision};
 }

@@ -23,6 +23,7 @@
 #include "server/app/version.h"
 #include "server/store/store.h"
 #include "tin/base/result.h"
+#include "tin/terrain/source_samples.h"
 #include "tin/terrain/terrain.h"
 
 namespace server::app {
@@ -48,8 +49,20 @@ struct Edited {
   std::vector<VertexId> ids;  // one per edit
 };
 
-/// What became of the vertices that a simplification would remove.
-struct Removed {
+/// What a simplification does to the vertices of the version that it saw.
+struct Thinning {
+  std::vector<VertexId> removed;                    // ascending
+  std::vector<tin::terrain::Placement> inserted;    // samples that become vertices again, by position
+  std::vector<tin::terrain::Vertex> reset;          // vertices that get another height, by id
+
+  bool empty() const { return removed.empty() && inserted.empty() && reset.empty(); }
+};
+
+/// `terrain` after it, built anew.
+tin::terrain::Terrain thinned(const tin::terrain::Terrain& terrain, const Thinning& thinning);
+
+/// What became of it.
+struct Landed {
   std::uint64_t revision = 0;
   std::size_t vertices_left = 0;
   bool edited_meanwhile = false;  // others edited the TIN since the version that was seen
@@ -113,11 +126,16 @@ class Tin {
   tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, std::span<const std::uint64_t> expected,
                                  const store::RevisionInfo& info);
 
-  /// Removes the vertices (ascending) as one revision; those that are gone meanwhile, or changed since
-  /// `seen`, stay out of it. A large removal is prepared beside readers and editors. Errors: kNotFound
-  /// (retired), kStorage.
-  tin::base::Result<Removed> remove_vertices(const Version& seen, std::span<const VertexId> ids,
-                                             const store::RevisionInfo& info);
+  /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`, and positions
+  /// where another stands by now, stay out of it. A large one is prepared beside readers and editors. Errors:
+  /// kTooLarge (vertices per TIN), kNotFound (retired), kStorage.
+  tin::base::Result<Landed> land(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info);
+
+  /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store when nobody
+  /// else has them in hand, and given back when the last one lets go. Errors: kNotFound (retired), kStorage, kMalformed.
+  tin::base::Result<std::shared_ptr<const tin::terrain::SourceSamples>> source() const;
+  /// The same as bytes, for another TIN; empty where none are kept. Errors: kNotFound (retired), kStorage.
+  tin::base::Result<std::string> source_bytes() const;
 
   /// Removes the TIN from the store. Those who hold it still may read it; edits get kNotFound, so that none
   /// of them, and no job that ends late, can reach a later TIN of the same id. Errors: kNotFound (it is gone
@@ -132,12 +150,13 @@ class Tin {
  private:
   using Terrain = tin::terrain::Terrain;
 
+  tin::base::Error too_many_vertices() const;
   void own_terrain();  // copies it if a version is out; with mutex_ held
   tin::base::Result<std::shared_ptr<Terrain>> fit_open_frame(std::span<const WorldEdit> edits) const;
   tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
   void replace_terrain(std::shared_ptr<Terrain> terrain);
-  tin::base::Result<Removed> remove_in_place(const Version& seen, std::span<const VertexId> ids,
-                                             const store::RevisionInfo& info);
+  tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning,
+                                          const store::RevisionInfo& info);
   void write_checkpoint();
 
   const store::TinRecord record_;
@@ -156,6 +175,9 @@ class Tin {
   mutable std::optional<Summary> summary_;
   KeptVersions kept_;
   ChangedAreas changed_areas_;
+
+  mutable std::mutex source_mutex_;  // held while the source is read, so that it is read once
+  mutable std::weak_ptr<const tin::terrain::SourceSamples> source_;
 };
 
 }  // namespace server::app

@@ -20,16 +20,6 @@ tin::base::Error system_error(const std::string& what, const std::filesystem::pa
                           what + " " + path.string() + ": " + std::generic_category().message(errno));
 }
 
-// A name in a folder is durable only once the folder is synced.
-Result<void> sync_folder(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return system_error("cannot open the folder", folder);
-  Result<void> result;
-  if (::fsync(descriptor) != 0) result = system_error("cannot sync the folder", folder);
-  ::close(descriptor);
-  return result;
-}
-
 }  // namespace
 
 Result<DataLock> DataLock::acquire(const std::filesystem::path& folder) {
@@ -49,17 +39,6 @@ DataLock::DataLock(DataLock&& other) noexcept : descriptor_(std::exchange(other.
 
 DataLock::~DataLock() {
   if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-Result<void> ensure_folder(const std::filesystem::path& folder) {
-  std::error_code failure;
-  const bool made = std::filesystem::create_directory(folder, failure);
-  if (failure) {
-    return tin::base::error(Code::kStorage,
-                            "cannot make the data folder " + folder.string() + ": " + failure.message());
-  }
-  return made ? sync_folder(std::filesystem::absolute(folder).lexically_normal().parent_path())
-              : Result<void>();
 }
 
 }  // namespace server::store

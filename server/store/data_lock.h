@@ -23,7 +23,4 @@ class DataLock {
   int descriptor_;
 };
 
-/// Makes `folder` unless it is there, durably. Errors: kStorage.
-tin::base::Result<void> ensure_folder(const std::filesystem::path& folder);
-
 }  // namespace server::store

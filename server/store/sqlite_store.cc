@@ -1,9 +1,12 @@
 #include "server/store/sqlite_store.h"
 
+#include <array>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "server/store/data_lock.h"
+#include "server/store/files.h"
 #include "server/store/row_checksum.h"
 #include "server/store/sqlite_internal.h"
 
@@ -13,11 +16,12 @@ namespace {
 using tin::base::Code;
 using tin::base::Result;
 
-constexpr std::int64_t kSchemaVersion = 1;
 // Rows stay far below SQLite's limit of 10^9 bytes, and memory for one is small.
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 
-constexpr const char* kSchema = R"sql(
+// What leads from each version of the schema to the next: a new store takes all steps, an older one the rest.
+constexpr std::array kMigrations = {
+    R"sql(
 CREATE TABLE tin(
   key INTEGER PRIMARY KEY AUTOINCREMENT,
   id TEXT NOT NULL UNIQUE,
@@ -41,7 +45,14 @@ CREATE TABLE journal(
   note TEXT NOT NULL,
   crc INTEGER NOT NULL,
   PRIMARY KEY(tin, revision));
-)sql";
+)sql",
+    // The source of a TIN: a file.
+    R"sql(
+ALTER TABLE tin ADD COLUMN source_file TEXT NOT NULL DEFAULT '';
+ALTER TABLE tin ADD COLUMN source_bytes INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE tin ADD COLUMN source_crc INTEGER NOT NULL DEFAULT 0;
+)sql"};
+constexpr std::int64_t kSchemaVersion = kMigrations.size();
 
 tin::base::Error no_such_tin(std::string_view id) {
   return tin::base::error(Code::kNotFound, "no TIN \"" + std::string(id) + "\"");
@@ -58,6 +69,7 @@ struct Head {
   std::uint64_t checkpoint_revision = 0;
   std::uint64_t checkpoint_bytes = 0;
   std::uint64_t last_revision = 0;
+  FileReference source;
 };
 
 class SqliteStore : public Store {
@@ -66,7 +78,8 @@ class SqliteStore : public Store {
 
   Result<void> open(const std::filesystem::path& folder, const SqliteOptions& options);
 
-  Result<void> create_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint) override;
+  Result<void> create_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint,
+                          std::string_view source) override;
   Result<void> update_title(std::string_view tin, std::string_view title) override;
   Result<void> remove_tin(std::string_view tin) override;
   Result<void> append(std::string_view tin, std::uint64_t revision, std::string_view record,
@@ -75,19 +88,24 @@ class SqliteStore : public Store {
                               std::string_view checkpoint) override;
   Result<std::vector<TinRecord>> list() override;
   Result<Loaded> load(std::string_view tin) override;
+  Result<std::string> load_source(std::string_view tin) override;
 
  private:
   Result<void> prepare_schema();
+  Result<void> open_files(const std::filesystem::path& folder, const SqliteOptions& options);
   Result<void> limit_size(std::int64_t bytes);
   /// Runs `work` in a transaction, which is committed when it succeeds.
   template <class Work>
   Result<void> write(Work work);
   Result<Head> head(std::string_view tin);
+  Result<void> insert_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint,
+                          const FileReference& source);
   Result<void> write_chunks(std::int64_t key, std::uint64_t revision, std::string_view checkpoint);
   Result<std::string> read_chunks(const Head& head);
   Result<std::vector<JournalRow>> read_journal(const Head& head);
 
   DataLock lock_;  // outlives the connection
+  std::optional<Files> files_;
   std::mutex mutex_;
   Database database_;
 };
@@ -102,7 +120,24 @@ Result<void> SqliteStore::open(const std::filesystem::path& folder, const Sqlite
   auto set = database_.execute(
       "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA journal_size_limit = 67108864;");
   if (!set.ok()) return set;
-  return limit_size(options.max_file_bytes);
+  if (auto limited = limit_size(options.max_file_bytes); !limited.ok()) return limited;
+  return open_files(folder, options);
+}
+
+Result<void> SqliteStore::open_files(const std::filesystem::path& folder, const SqliteOptions& options) {
+  auto files = Files::open(folder / "files", options.disk ? options.disk : std::make_shared<Disk>());
+  if (!files.ok()) return files.error();
+  files_ = *std::move(files);
+  std::vector<std::string> named;
+  Query query = database_.query("SELECT source_file FROM tin WHERE source_file <> '' ORDER BY source_file");
+  for (;;) {
+    const auto row = query.next();
+    if (!row.ok()) return row.error();
+    if (!*row) break;
+    named.push_back(query.bytes(0));
+  }
+  files_->remove_all_but(named);
+  return {};
 }
 
 Result<void> SqliteStore::prepare_schema() {
@@ -119,7 +154,9 @@ Result<void> SqliteStore::prepare_schema() {
   if (auto wal = database_.execute("PRAGMA journal_mode = WAL"); !wal.ok() || *version == kSchemaVersion)
     return wal;
   return write([&]() -> Result<void> {
-    if (auto made = database_.execute(kSchema); !made.ok()) return made;
+    for (auto step = static_cast<std::size_t>(*version); step < kMigrations.size(); ++step) {
+      if (auto made = database_.execute(kMigrations[step]); !made.ok()) return made;
+    }
     return database_.execute(("PRAGMA user_version = " + std::to_string(kSchemaVersion)).c_str());
   });
 }
@@ -148,15 +185,15 @@ Result<void> SqliteStore::write(Work work) {
 Result<Head> SqliteStore::head(std::string_view tin) {
   Query query = database_.query(
       "SELECT key, id, title, created_ms, checkpoint_revision, checkpoint_bytes, max(checkpoint_revision,"
-      " coalesce((SELECT max(revision) FROM journal WHERE journal.tin = tin.key), 0)) FROM tin WHERE id = ?");
+      " coalesce((SELECT max(revision) FROM journal WHERE journal.tin = tin.key), 0)),"
+      " source_file, source_bytes, source_crc FROM tin WHERE id = ?");
   const auto row = query.bind_text(tin).next();
   if (!row.ok()) return row.error();
   if (!*row) return no_such_tin(tin);
-  return Head{query.integer(0),
-              {query.bytes(1), query.bytes(2), query.integer(3)},
-              query.natural(4),
-              query.natural(5),
-              query.natural(6)};
+  return Head{
+      query.integer(0), {query.bytes(1), query.bytes(2), query.integer(3)},
+      query.natural(4), query.natural(5),
+      query.natural(6), {query.bytes(7), query.natural(8), static_cast<std::uint32_t>(query.integer(9))}};
 }
 
 Result<void> SqliteStore::write_chunks(std::int64_t key, std::uint64_t revision,
@@ -174,21 +211,37 @@ Result<void> SqliteStore::write_chunks(std::int64_t key, std::uint64_t revision,
 }
 
 Result<void> SqliteStore::create_tin(const TinRecord& tin, std::uint64_t revision,
-                                     std::string_view checkpoint) {
-  const std::lock_guard guard(mutex_);
-  return write([&]() -> Result<void> {
-    auto present = head(tin.id);
-    if (present.ok()) return tin::base::error(Code::kConflict, "there is a TIN \"" + tin.id + "\" already");
-    if (present.error().code != Code::kNotFound) return present.error();
-    Query insert = database_.query(
-        "INSERT INTO tin(id, title, created_ms, checkpoint_revision, checkpoint_bytes) VALUES(?, ?, ?, ?, "
-        "?)");
-    insert.bind_text(tin.id).bind_text(tin.title).bind(tin.created_ms).bind(revision);
-    if (auto done = insert.bind(std::uint64_t{checkpoint.size()}).run(); !done.ok()) return done;
-    const auto key = database_.number("SELECT last_insert_rowid()");
-    if (!key.ok()) return key.error();
-    return write_chunks(*key, revision, checkpoint);
-  });
+                                     std::string_view checkpoint, std::string_view source) {
+  FileReference file;
+  if (!source.empty()) {
+    auto put = files_->put({source}, "source");
+    if (!put.ok()) return put.error();
+    file = *std::move(put);
+  }
+  auto made = [&] {
+    const std::lock_guard guard(mutex_);
+    return write([&] { return insert_tin(tin, revision, checkpoint, file); });
+  }();
+  // Where a disk that fails left it open whether the row is there, the file must stay.
+  if (!made.ok() && made.error().code == Code::kConflict) files_->remove(file.name);
+  return made;
+}
+
+Result<void> SqliteStore::insert_tin(const TinRecord& tin, std::uint64_t revision,
+                                     std::string_view checkpoint, const FileReference& source) {
+  auto present = head(tin.id);
+  if (present.ok()) return tin::base::error(Code::kConflict, "there is a TIN \"" + tin.id + "\" already");
+  if (present.error().code != Code::kNotFound) return present.error();
+  Query insert = database_.query(
+      "INSERT INTO tin(id, title, created_ms, checkpoint_revision, checkpoint_bytes, source_file, "
+      "source_bytes,"
+      " source_crc) VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.bind_text(tin.id).bind_text(tin.title).bind(tin.created_ms).bind(revision);
+  insert.bind(std::uint64_t{checkpoint.size()}).bind_text(source.name).bind(source.bytes);
+  if (auto done = insert.bind(std::int64_t{source.crc}).run(); !done.ok()) return done;
+  const auto key = database_.number("SELECT last_insert_rowid()");
+  if (!key.ok()) return key.error();
+  return write_chunks(*key, revision, checkpoint);
 }
 
 Result<void> SqliteStore::update_title(std::string_view tin, std::string_view title) {
@@ -205,11 +258,15 @@ Result<void> SqliteStore::update_title(std::string_view tin, std::string_view ti
 
 Result<void> SqliteStore::remove_tin(std::string_view tin) {
   const std::lock_guard guard(mutex_);
-  return write([&]() -> Result<void> {
+  std::string source;
+  auto removed = write([&]() -> Result<void> {
     const auto present = head(tin);
     if (!present.ok()) return present.error();
+    source = present->source.name;
     return database_.query("DELETE FROM tin WHERE key = ?").bind(present->key).run();
   });
+  if (removed.ok()) files_->remove(source);
+  return removed;
 }
 
 Result<void> SqliteStore::append(std::string_view tin, std::uint64_t revision, std::string_view record,
@@ -313,11 +370,22 @@ Result<Loaded> SqliteStore::load(std::string_view tin) {
   return Loaded{present->tin, present->checkpoint_revision, *std::move(checkpoint), *std::move(journal)};
 }
 
+Result<std::string> SqliteStore::load_source(std::string_view tin) {
+  std::unique_lock lock(mutex_);
+  const auto present = head(tin);
+  if (!present.ok()) return present.error();
+  lock.unlock();
+  if (present->source.name.empty()) return std::string();
+  return files_->get(present->source);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Store>> open_sqlite_store(const std::filesystem::path& folder,
                                                  const SqliteOptions& options) {
-  if (auto made = ensure_folder(folder); !made.ok()) return std::move(made).error();
+  Disk plain;
+  Disk& disk = options.disk ? *options.disk : plain;
+  if (auto made = ensure_folder(folder, disk); !made.ok()) return std::move(made).error();
   auto lock = DataLock::acquire(folder);
   if (!lock.ok()) return std::move(lock).error();
   auto store = std::make_unique<SqliteStore>(*std::move(lock));

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "server/store/files.h"
 #include "server/store/store.h"
 #include "tin/base/result.h"
 
@@ -15,10 +16,12 @@ struct SqliteOptions {
   /// The most that the database file may grow to, rounded up to pages; past it writes fail with kDiskFull. 0:
   /// no bound but the disk's.
   std::int64_t max_file_bytes = 0;
+  /// What writes the files beside the database; null: the system. Tests put faults here.
+  std::shared_ptr<Disk> disk = nullptr;
 };
 
-/// Opens or creates the store of `folder`: tinsmith.sqlite3 with SQLite's files beside it, and the file
-/// "lock". The folder is made if its parent is there.
+/// Opens or creates the store of `folder`: tinsmith.sqlite3 with SQLite's files beside it, the folder "files"
+/// for what is large, and the file "lock". The folder is made if its parent is there.
 ///
 /// Errors: kConflict when the folder is open already, here or in another process; kUnsupported when a newer
 ///         version wrote it, or it is no store of ours; kStorage.

@@ -1,5 +1,5 @@
-// Where TINs outlive the process: one checkpoint per TIN and a journal of revisions after it. Bytes only:
-// what they mean is tin/codec's business.
+// Where TINs outlive the process: one checkpoint per TIN, a journal of revisions after it, and the source that
+// it was made from. Bytes only: what they mean is tin/codec's business.
 //
 //   auto store = open_sqlite_store("/var/lib/tinsmith");
 //   (*store)->create_tin({"alps", "The Alps", now_ms}, 1, encode_checkpoint(...));
@@ -60,9 +60,10 @@ class Store {
  public:
   virtual ~Store() = default;
 
-  /// Errors: kConflict when there is a TIN with this id.
+  /// `source` is kept beside the checkpoint for as long as the TIN is there, and is never written again; an empty
+  /// one is none. Errors: kConflict when there is a TIN with this id.
   virtual tin::base::Result<void> create_tin(const TinRecord& tin, std::uint64_t revision,
-                                             std::string_view checkpoint) = 0;
+                                             std::string_view checkpoint, std::string_view source = {}) = 0;
   /// Errors: kNotFound.
   virtual tin::base::Result<void> update_title(std::string_view tin, std::string_view title) = 0;
   /// Removes the TIN with its checkpoint and its journal. Errors: kNotFound.
@@ -81,6 +82,9 @@ class Store {
   virtual tin::base::Result<std::vector<TinRecord>> list() = 0;
   /// Errors: kNotFound; kStorage also when a row is missing or does not match its checksum.
   virtual tin::base::Result<Loaded> load(std::string_view tin) = 0;
+  /// The source that the TIN was created with; empty when it has none. Errors: kNotFound; kStorage also when it
+  /// is missing or does not match its checksum.
+  virtual tin::base::Result<std::string> load_source(std::string_view tin) = 0;
 };
 
 }  // namespace server::store

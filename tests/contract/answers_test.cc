@@ -23,6 +23,9 @@ class AnswersTest : public testing::Test {
       : server_([](server::Config& config) {
           config.limits.body_bytes_memory = 2048;
           config.limits.export_pixels = 1000;
+          config.limits.polygon_positions = 5;
+          config.limits.contour_levels = 20;
+          config.limits.answer_positions = 6;
         }) {
     EXPECT_EQ(server_.post_json("/tins", kHill).status, 201);
     EXPECT_EQ(server_.upload("/tins?id=grid&crs=EPSG:32617", "text/plain", ascii_grid(5, 4)).status, 201);
@@ -119,6 +122,62 @@ class AnswersTest : public testing::Test {
             {{"POST", path, json, std::string(3000, ' ')}, 413},
             {{"POST", path, "text/plain", R"({"positions":[]})"}, 415},
             {{"POST", path, json, R"({"positions":[[1e999,0]]})"}, 422}});
+  }
+
+  void ask_slopes_and_lines() {
+    const std::string path = "/tins/hill", json = "application/json", sight = "/tins/grid/line-of-sight";
+    expect({{{"GET", path + "/slope?x=500050&y=4500020"}, 200},
+            {{"GET", path + "/slope?x=0&y=0"}, 200},
+            {{"GET", path + "/slope?x=0"}, 400},
+            {{"GET", "/tins/none/slope?x=0&y=0"}, 404},
+            {{"GET", path + "/slope?x=0&y=0&voids=some"}, 422},
+            {{"POST", path + "/slope", json, R"({"positions":[[500050,4500020],[0,0]]})"}, 200},
+            {{"POST", path + "/slope", json, R"({"positions":1})"}, 400},
+            {{"POST", "/tins/none/slope", json, R"({"positions":[]})"}, 404},
+            {{"POST", path + "/slope", json, std::string(3000, ' ')}, 413},
+            {{"POST", path + "/slope", "text/plain", "{}"}, 415},
+            {{"POST", path + "/slope", json, R"({"positions":[],"crs":"EPSG:1"})"}, 422},
+            {{"GET", path + "/profile?coords=500010,4500010,500020,4500020"}, 200},
+            {{"GET", path + "/profile?coords=500010"}, 400},
+            {{"GET", "/tins/none/profile?coords=0,0"}, 404},
+            {{"GET", "/tins/grid/profile?coords=0.5,0.5,4.5,3.4"}, 413},
+            {{"GET", path + "/profile?coords=1e300,0,1,1"}, 422},
+            {{"POST", path + "/profile", json, R"({"positions":[[500010,4500010],[0,4500020]]})"}, 200},
+            {{"POST", path + "/profile", json, R"({"positions":[[1]]})"}, 400},
+            {{"POST", "/tins/none/profile", json, R"({"positions":[]})"}, 404},
+            {{"POST", "/tins/grid/profile", json, R"({"positions":[[0.5,0.5],[4.5,3.4]]})"}, 413},
+            {{"POST", path + "/profile", "text/plain", "{}"}, 415},
+            {{"POST", path + "/profile", json, R"({"positions":[]})"}, 422},
+            {{"GET", sight + "?observer=1,1&target=2,1&observer-height=2"}, 200},
+            {{"GET", sight + "?observer=1,1"}, 400},
+            {{"GET", "/tins/none/line-of-sight?observer=1,1&target=2,1"}, 404},
+            {{"GET", sight + "?observer=0.5,0.5&target=4.5,3.4"}, 413},
+            {{"GET", sight + "?observer=1,1&target=9,9"}, 422}});
+  }
+
+  void ask_contours_and_volumes() {
+    const std::string path = "/tins/hill";
+    expect({{{"GET", path + "/contours?interval=2"}, 200},
+            {{"GET", path + "/contours?levels=12,13.5&crs=EPSG:32617&bbox=500000,4500000,500050,4500100"}, 200},
+            {{"GET", "/tins/local/contours?interval=1"}, 200},
+            {{"GET", "/tins/empty/contours?interval=1"}, 200},
+            {{"GET", path + "/contours?interval=x"}, 400},
+            {{"GET", "/tins/none/contours?interval=1"}, 404},
+            {{"GET", path + "/contours?interval=0.01"}, 413},
+            {{"GET", path + "/contours"}, 422},
+            {{"GET", path + "/volume?level=12"}, 200},
+            {{"GET", path + "/volume?level=12&bbox=500000,4500000,500050,4500100"}, 200},
+            {{"GET", "/tins/empty/volume?level=12"}, 200},
+            {{"GET", path + "/volume"}, 400},
+            {{"GET", "/tins/none/volume?level=12"}, 404},
+            {{"GET", path + "/volume?level=12&polygon=0,0,1,0,2,0,2,1,2,2,0,2"}, 413},
+            {{"GET", path + "/volume?level=12&polygon=0,0,1,0,2,0"}, 422},
+            {{"GET", path + "/surface-area"}, 200},
+            {{"GET", "/tins/local/surface-area?polygon=1,1,5,1,1,5"}, 200},
+            {{"GET", path + "/surface-area?bbox=1"}, 400},
+            {{"GET", "/tins/none/surface-area"}, 404},
+            {{"GET", path + "/surface-area?polygon=0,0,1,0,2,0,2,1,2,2,0,2"}, 413},
+            {{"GET", path + "/surface-area?bbox=0,0,1,1&polygon=0,0,1,0,1,1"}, 422}});
   }
 
   void ask_collections() {
@@ -247,6 +306,8 @@ class AnswersTest : public testing::Test {
     const std::string path = "/tins/grid/export";
     expect({{{"GET", path}, 200},
             {{"GET", path + "?f=geotiff&cell-size=0.5"}, 200},
+            {{"GET", path + "?layer=hillshade&azimuth=90&altitude=30&exaggeration=2"}, 200},
+            {{"GET", path + "?interpolation=natural-neighbour&cell-size=0.5"}, 200},
             {{"GET", path + "?f=geojson"}, 200},
             {{"GET", path + "?f=geojson&collection=vertices&crs=EPSG:32617"}, 200},
             {{"GET", path + "?f=geojson&crs=EPSG:4326"}, 200},
@@ -324,6 +385,8 @@ TEST_F(AnswersTest, EveryDocumentedStatusIsGivenAndFitsItsSchema) {
   ask_tins();
   ask_edits();
   ask_elevations();
+  ask_slopes_and_lines();
+  ask_contours_and_volumes();
   ask_collections();
   ask_tiles();
   ask_vertices();

@@ -42,7 +42,9 @@ class PagingTest : public testing::Test {
       target = next_of(page);
       if (between) between();
     }
-    if (target.empty()) EXPECT_EQ(features.size(), matched);
+    if (target.empty()) {
+      EXPECT_EQ(features.size(), matched);
+    }
     return features;
   }
 

@@ -52,7 +52,7 @@ TEST(ConfigTest, EveryNumberOfTheExampleCounts) {
     EXPECT_NE(parsed(changed.dump()), Config{}) << pointer;
     ++numbers;
   }
-  EXPECT_EQ(numbers, 32);
+  EXPECT_EQ(numbers, 35);
 }
 
 TEST(ConfigTest, APublicUrlIsOneOfTheWeb) {

@@ -8,6 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+
 #include "tests/server/store/store_kinds.h"
 
 namespace server::store {
@@ -84,10 +86,47 @@ TEST_F(SqliteStoreTest, DamageToOneTinLeavesTheOthers) {
 }
 
 TEST_F(SqliteStoreTest, NewerSchemasAreRefused) {
-  tamper("PRAGMA user_version = 2");
+  tamper("PRAGMA user_version = 1000");
   const auto opened = open_sqlite_store(folder_.path());
   ASSERT_TRUE(fails(opened, Code::kUnsupported));
   EXPECT_NE(opened.error().message.find("newer"), std::string::npos) << opened.error().message;
+}
+
+TEST_F(SqliteStoreTest, DamagedAndMissingSourcesAreReported) {
+  ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b", "the source of b")));
+  std::filesystem::path file;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "files")) file = entry.path();
+  for (const std::string damage : {"the source of c", "short", ""}) {
+    if (damage.empty()) {
+      std::filesystem::remove(file);
+    } else {
+      std::ofstream(file, std::ios::trunc) << damage;
+    }
+    EXPECT_TRUE(fails(store_->load_source("b"), Code::kStorage)) << damage;
+    EXPECT_TRUE(succeeds(store_->load("b")));
+  }
+}
+
+TEST_F(SqliteStoreTest, FilesThatNoRowNamesAreRemovedAtTheStart) {
+  ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b", "the source of b")));
+  const std::filesystem::path files = folder_.path() / "files";
+  std::ofstream(files / "orphan.source") << "left by a crash";
+  std::ofstream(files / "other.source.part") << "half";
+  reopen();
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(files), {}), 1);
+  EXPECT_EQ(store_->load_source("b").value(), "the source of b");
+  ASSERT_TRUE(succeeds(store_->remove_tin("b")));
+  EXPECT_TRUE(std::filesystem::is_empty(files));
+}
+
+TEST_F(SqliteStoreTest, AnOlderStoreIsBroughtUpToDate) {
+  tamper(
+      "ALTER TABLE tin DROP COLUMN source_file; ALTER TABLE tin DROP COLUMN source_bytes;"
+      "ALTER TABLE tin DROP COLUMN source_crc; PRAGMA user_version = 1");
+  reopen();
+  EXPECT_EQ(store_->load("alps")->journal.size(), 2U);
+  EXPECT_EQ(store_->load_source("alps").value(), "");
+  EXPECT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b", "the source of b")));
 }
 
 TEST_F(SqliteStoreTest, OtherDatabasesAreRefused) {

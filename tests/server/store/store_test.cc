@@ -73,6 +73,7 @@ TEST_P(StoreTest, AnIdIsTakenOnce) {
 
 TEST_P(StoreTest, UnknownTinsAreNotFound) {
   EXPECT_TRUE(fails(store_->load("alps"), Code::kNotFound));
+  EXPECT_TRUE(fails(store_->load_source("alps"), Code::kNotFound));
   EXPECT_TRUE(fails(store_->append("alps", 1, "", {}), Code::kNotFound));
   EXPECT_TRUE(fails(store_->put_checkpoint("alps", 1, ""), Code::kNotFound));
   EXPECT_TRUE(fails(store_->update_title("alps", ""), Code::kNotFound));
@@ -134,6 +135,28 @@ TEST_P(StoreTest, CheckpointsOfAnySizeAreKept) {
     ASSERT_TRUE(succeeds(loaded));
     EXPECT_TRUE(loaded->checkpoint == bytes) << size;
   }
+}
+
+TEST_P(StoreTest, TheSourceStaysAsItWasBesideAllCheckpoints) {
+  std::string source(10'000'000, '\0');
+  for (std::size_t i = 0; i < source.size(); ++i) source[i] = static_cast<char>(i * 2654435761U >> 13);
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one", source)));
+  ASSERT_TRUE(succeeds(store_->create_tin({"bare", "", 0}, 1, "one")));
+  ASSERT_TRUE(succeeds(store_->append("alps", 2, "two", {})));
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 2, "two")));
+  for (int round = 0; round < 2; ++round) {
+    const auto loaded = store_->load_source("alps");
+    ASSERT_TRUE(succeeds(loaded));
+    EXPECT_TRUE(*loaded == source);
+    EXPECT_EQ(store_->load_source("bare").value(), "");
+    reopen();
+  }
+  EXPECT_TRUE(fails(store_->create_tin(kAlps, 1, "", "another source"), Code::kConflict));
+  EXPECT_TRUE(*store_->load_source("alps") == source);
+  ASSERT_TRUE(succeeds(store_->remove_tin("alps")));
+  EXPECT_TRUE(fails(store_->load_source("alps"), Code::kNotFound));
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one", "new")));
+  EXPECT_EQ(store_->load_source("alps").value(), "new");
 }
 
 TEST_P(StoreTest, TitlesChange) {
