@@ -6,12 +6,15 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <tuple>
 
 #include "proto/coverage_documents.h"
 #include "proto/crs_uri.h"
 #include "server/api/collections.h"
+#include "server/api/export_grid.h"
 #include "server/api/feature_query.h"
 #include "server/api/links.h"
+#include "server/api/routes.h"
 #include "server/gdal/geotiff.h"
 #include "server/tiles/sampler.h"
 

@@ -1,4 +1,5 @@
 // Tiles of the live TIN: quantized-mesh for Cesium, elevations and relief as pictures for MapLibre and others.
+#include <algorithm>
 #include <cmath>
 
 #include "proto/bbox.h"

@@ -21,7 +21,9 @@ double from_mapbox(std::array<std::uint8_t, 3> c) {
 TEST(ColoursTest, GiveTheElevationBackWithinTheirRounding) {
   for (double h = -11000; h < 9000; h += 0.377) {
     EXPECT_NEAR(from_terrarium(terrarium_colour(h)), h, 1.0 / 512 + 1e-9);
-    if (h >= -10000) EXPECT_NEAR(from_mapbox(mapbox_colour(h)), h, 0.05 + 1e-9);
+    if (h >= -10000) {
+      EXPECT_NEAR(from_mapbox(mapbox_colour(h)), h, 0.05 + 1e-9);
+    }
   }
   EXPECT_EQ(terrarium_colour(0), (std::array<std::uint8_t, 3>{128, 0, 0}));
   EXPECT_EQ(mapbox_colour(0), (std::array<std::uint8_t, 3>{1, 134, 160}));

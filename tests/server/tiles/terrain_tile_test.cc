@@ -62,10 +62,16 @@ void check_all_tiles(const Terrain& terrain) {
       for (std::uint32_t x = x0; x <= x1; ++x) {
         const DecodedTile& tile = decoded.emplace(std::pair(x, y), made(terrain, *tiles, {level, x, y}).tile).first->second;
         expect_whole(tile);
-        if (x > x0) EXPECT_EQ(side(decoded.at({x - 1, y}), 2), side(tile, 0)) << level << "/" << x << "/" << y;
-        if (y > y0) EXPECT_EQ(side(decoded.at({x, y - 1}), 3), side(tile, 1)) << level << "/" << x << "/" << y;
+        if (x > x0) {
+          EXPECT_EQ(side(decoded.at({x - 1, y}), 2), side(tile, 0)) << level << "/" << x << "/" << y;
+        }
+        if (y > y0) {
+          EXPECT_EQ(side(decoded.at({x, y - 1}), 3), side(tile, 1)) << level << "/" << x << "/" << y;
+        }
         EXPECT_TRUE(tiles->has({level, x, y}));
-        if (level > 0) EXPECT_TRUE(tiles->has({level - 1, x / 2, y / 2})) << "a parent for each child";
+        if (level > 0) {
+          EXPECT_TRUE(tiles->has({level - 1, x / 2, y / 2})) << "a parent for each child";
+        }
       }
     }
   }
