@@ -119,7 +119,8 @@ std::optional<int> retry_after_s(int status) {
 
 Problem make_problem(const Row& row, std::string detail, std::string where) {
   return Problem{row.status,        std::string(row.slug), std::string(row.title),
-                 std::move(detail), std::move(where),      retry_after_s(row.status)};
+                 std::move(detail), std::move(where),      "",
+                 retry_after_s(row.status)};
 }
 
 }  // namespace
@@ -142,7 +143,7 @@ Problem status_problem(int status, std::string detail, std::string where) {
 std::string problem_json(const Problem& problem) {
   JsonWriter json;
   json.begin_object();
-  json.key("type").string("/problems/" + problem.slug);
+  json.key("type").string(problem.uri.empty() ? "/problems/" + problem.slug : problem.uri);
   json.key("title").string(problem.title);
   json.key("status").integer(static_cast<std::uint64_t>(problem.status));
   if (!problem.detail.empty()) json.key("detail").string(problem.detail);

@@ -22,6 +22,7 @@ struct Problem {
   std::string title;
   std::string detail;
   std::string where;                 // JSON pointer, "query:name" or the like; empty when there is no place
+  std::string uri;                   // of the kind of problem where a standard gives it one; else it is made of the slug
   std::optional<int> retry_after_s;  // to be sent as Retry-After
 };
 

@@ -47,6 +47,7 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/uploads_at_once", {&limits.uploads_at_once, 1, 1000}},
           {"/limits/exports_at_once", {&limits.exports_at_once, 1, 1000}},
           {"/limits/export_seconds", {&limits.export_seconds, 1, kMillion}},
+          {"/limits/tile_cache_bytes", {&limits.tile_cache_bytes, 0, std::int64_t{1} << 40}},
           {"/limits/page_size", {&limits.page_size, 1, kMillion}},
           {"/limits/page_size_max", {&limits.page_size_max, 1, kMillion}}};
 }

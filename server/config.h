@@ -39,6 +39,7 @@ struct LimitConfig {
   std::int64_t uploads_at_once = 2;     // files being read beside the jobs
   std::int64_t exports_at_once = 2;     // rasters being made
   std::int64_t export_seconds = 120;    // for making one
+  std::int64_t tile_cache_bytes = 64 << 20;  // of tiles that are kept; 0: none
   std::int64_t page_size = 1000;        // when a request does not say
   std::int64_t page_size_max = 10'000;  // the most that it may say; not less than page_size
   friend bool operator==(const LimitConfig&, const LimitConfig&) = default;

@@ -74,7 +74,10 @@ void GeoJsonWriter::vertex(VertexId id, const Position& at) {
   out_ += R"(,"geometry":{"type":"Point","coordinates":)";
   append_position(at);
   out_ += R"(},"properties":{"z":)";
+  // Always with a point or exponent: GDAL takes the type of a property from the first page.
+  const std::size_t begin = out_.size();
   append_shortest(out_, at.z);
+  if (out_.find_first_of(".e", begin) == std::string::npos) out_ += ".0";
   out_ += "}}";
 }
 

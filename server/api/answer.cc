@@ -45,6 +45,12 @@ Response status_answer(int status, const std::string& detail) {
   return problem_response(proto::status_problem(status, detail));
 }
 
+Response processes_exception(const tin::base::Error& problem, std::string_view name) {
+  proto::Problem document = proto::to_problem(problem);
+  document.uri = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/" + std::string(name);
+  return problem_response(document);
+}
+
 http::ErrorPages error_pages() {
   return {[](const tin::base::Error& problem) { return problem_answer(problem); },
           [](int status, const std::string& detail) {

@@ -27,6 +27,9 @@ Response problem_answer(const tin::base::Error& error);
 /// A problem that no error code stands for, such as 428.
 Response status_answer(int status, const std::string& detail);
 
+/// An error that OGC API Processes has a name for: "no-such-process", "no-such-job" or "result-not-ready".
+Response processes_exception(const tin::base::Error& error, std::string_view name);
+
 /// The pages that the HTTP server uses for its own errors.
 http::ErrorPages error_pages();
 

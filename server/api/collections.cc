@@ -5,6 +5,7 @@
 
 #include "proto/collection_schema.h"
 #include "proto/crs_uri.h"
+#include "server/api/coverage.h"
 #include "server/api/feature_query.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
@@ -93,10 +94,11 @@ Result<Response> collections(Context& context, const Request& request) {
   std::vector<proto::Link> links{{request.path, "self", std::string(kJson), ""},
                                  {request.path, "alternate", "text/html", "As a page"}};
   HtmlPage page{"Collections of " + (*tin)->title(), "", {}, {}, {}, {}};
-  for (const FeatureKind kind : kKinds) {
-    documents.push_back(collection_document(**tin, summary, kind));
-    make_absolute(documents.back().links, base);
-    page.links.push_back({request.path + "/" + documents.back().id, "item", "", documents.back().title});
+  for (const FeatureKind kind : kKinds) documents.push_back(collection_document(**tin, summary, kind));
+  if (has_surface(summary)) documents.push_back(surface_document(**tin, summary));
+  for (proto::CollectionDocument& document : documents) {
+    make_absolute(document.links, base);
+    page.links.push_back({request.path + "/" + document.id, "item", "", document.title});
   }
   make_absolute(links, base);
   Response response = negotiated(request, proto::collections_json(documents, links), kJson, page);

@@ -5,11 +5,16 @@
 namespace server::api {
 
 std::span<const std::string> server_conformance() {
-  static const std::array<std::string, 4> classes{
+  static const std::array<std::string, 9> classes{
       "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
       "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/landing-page",
       "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/json",
       "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/oas30",
+      "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core",
+      "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/ogc-process-description",
+      "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/json",
+      "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/oas30",
+      "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/dismiss",
   };
   return classes;
 }

@@ -36,8 +36,8 @@ proto::JobState state_of(jobs::JobState state) {
   return proto::JobState::kDismissed;
 }
 
-tin::base::Error no_such_job(std::string_view id) {
-  return error(Code::kNotFound, "There is no job \"" + std::string(id) + "\".");
+Response no_such_job(std::string_view id) {
+  return processes_exception(error(Code::kNotFound, "There is no job \"" + std::string(id) + "\"."), "no-such-job");
 }
 
 Result<Response> list(const Context& context) {
@@ -107,7 +107,7 @@ Result<Response> job_result_answer(const jobs::JobStatus& job) {
     case jobs::JobState::kRunning:
       break;
   }
-  return error(Code::kNotFound, "The job has not finished yet; ask for its status.");
+  return processes_exception(error(Code::kNotFound, "The job has not finished yet; ask for its status."), "result-not-ready");
 }
 
 void add_jobs(http::Router& router, Context& context) {

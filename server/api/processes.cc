@@ -1,4 +1,5 @@
 // /processes: the table of processes, and their execution as jobs (OGC API Processes).
+#include "proto/bbox.h"
 #include "server/api/answer.h"
 #include "server/api/job_answer.h"
 #include "server/api/processes/process.h"
@@ -12,13 +13,22 @@ using tin::base::error;
 
 namespace {
 
-tin::base::Error no_such_process(std::string_view id) {
-  return error(Code::kNotFound, "There is no process \"" + std::string(id) + "\".");
+Response no_such_process(std::string_view id) {
+  return processes_exception(error(Code::kNotFound, "There is no process \"" + std::string(id) + "\"."), "no-such-process");
 }
 
-Result<Response> list(Context&, const Request&) {
+Result<Response> list(Context&, const Request& request) {
+  constexpr std::uint64_t kMost = 1000;
+  std::uint64_t limit = kMost;
+  if (const auto text = request.query_value("limit")) {
+    const auto parsed = proto::parse_count(*text, 1, kMost, "query:limit");
+    if (!parsed) return error(Code::kMalformed, parsed.error().message, "query:limit");
+    limit = *parsed;
+  }
   std::vector<const proto::ProcessDescription*> descriptions;
-  for (const Process& process : processes::processes()) descriptions.push_back(process.description);
+  for (const Process& process : processes::processes()) {
+    if (descriptions.size() < limit) descriptions.push_back(process.description);
+  }
   return json_answer(proto::process_list_json(descriptions));
 }
 
@@ -65,7 +75,7 @@ void add_processes(http::Router& router, Context& context) {
   const auto on = [&context](auto f) {
     return guarded([&context, f](Request& request) { return f(context, request); });
   };
-  router.add({.method = Method::kGet, .pattern = "/processes", .handler = on(list)});
+  router.add({.method = Method::kGet, .pattern = "/processes", .query = {"limit"}, .handler = on(list)});
   router.add({.method = Method::kGet, .pattern = "/processes/{process}", .handler = on(show)});
   router.add({.method = Method::kPost,
               .pattern = "/processes/{process}/execution",

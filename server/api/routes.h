@@ -10,6 +10,7 @@
 #include "server/gdal/decoder.h"
 #include "server/http/router.h"
 #include "server/jobs/job_queue.h"
+#include "server/tiles/tile_cache.h"
 
 namespace server::api {
 
@@ -21,7 +22,8 @@ struct Context {
         config(with),
         uploads(with.limits.uploads_at_once),
         exports(with.limits.exports_at_once),
-        waiting(with.jobs.sync_waiting) {}
+        waiting(with.jobs.sync_waiting),
+        tiles(static_cast<std::size_t>(with.limits.tile_cache_bytes)) {}
 
   app::Catalogue& catalogue;
   jobs::JobQueue& jobs;
@@ -32,6 +34,7 @@ struct Context {
   Slots uploads;  // files being read beside the jobs
   Slots exports;  // rasters being made
   Slots waiting;  // requests that wait for their job
+  tiles::TileCache tiles;
 };
 
 http::Router make_router(Context& context);
@@ -44,12 +47,14 @@ void add_edits(http::Router& router, Context& context);
 void add_elevation(http::Router& router, Context& context);
 void add_tin_service(http::Router& router, Context& context);
 void add_collections(http::Router& router, Context& context);
+void add_coverage(http::Router& router, Context& context);
 void add_slope(http::Router& router, Context& context);
 void add_profile(http::Router& router, Context& context);
 void add_contours(http::Router& router, Context& context);
 void add_volume(http::Router& router, Context& context);
 void add_features(http::Router& router, Context& context);
 void add_feature_edits(http::Router& router, Context& context);
+void add_tiles(http::Router& router, Context& context);
 void add_export(http::Router& router, Context& context);
 void add_processes(http::Router& router, Context& context);
 void add_jobs(http::Router& router, Context& context);

@@ -256,6 +256,7 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, std::span<const std::
   if (kept) kept = journal(applied->change, info);
   if (!kept) return kept.error();
   undo.keep();
+  changed_areas_.note(revision_, tin::query::touched_area(terrain, applied->change));
   terrain.amend(applied->change);
   if (fitted) {
     replace_terrain(std::move(fitted));

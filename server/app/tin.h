@@ -18,6 +18,7 @@
 #include <variant>
 #include <vector>
 
+#include "server/app/changed_areas.h"
 #include "server/app/fair_mutex.h"
 #include "server/app/version.h"
 #include "server/store/store.h"
@@ -122,6 +123,8 @@ class Tin {
   std::uint64_t held_bytes() const;
   /// What the next edit will copy because a version is out.
   std::uint64_t copy_bytes() const;
+  /// Where its latest revisions changed it.
+  const ChangedAreas& changed_areas() const { return changed_areas_; }
 
   /// Remembers a version for a while, so that pages can go on from it when edits arrive; see page_version().
   void keep_for_pages(const Version& version) { kept_.keep(version); }
@@ -190,6 +193,7 @@ class Tin {
   mutable std::mutex cache_mutex_;
   mutable std::optional<Summary> summary_;
   KeptVersions kept_;
+  ChangedAreas changed_areas_;
 
   mutable std::mutex source_mutex_;  // held while the source is read, so that it is read once
   mutable std::weak_ptr<const tin::terrain::SourceSamples> source_;

@@ -8,7 +8,7 @@ namespace server::http {
 namespace {
 
 constexpr std::string_view kRequestFields =
-    "Accept, Authorization, Content-Disposition, Content-Type, If-Match, If-None-Match, "
+    "Accept, Authorization, Content-Crs, Content-Disposition, Content-Type, If-Match, If-None-Match, "
     "Last-Event-ID, Prefer, X-Request-Id";
 
 Response describe_options(const std::vector<Method>& allowed) {
@@ -45,6 +45,21 @@ std::optional<Response> check_body(const Head& head, Admission& admission, const
   return std::nullopt;
 }
 
+/// Whether the path ends with a slash too many, of a resource that can be read without it.
+bool redirects_to_no_slash(const Head& head, const Target& target, const Router& router) {
+  if (head.method != Method::kGet && head.method != Method::kHead) return false;
+  std::vector<std::string> segments = target.segments;
+  if (segments.size() < 2 || !segments.back().empty()) return false;
+  segments.pop_back();
+  return router.match(head.method, segments).route != nullptr;
+}
+
+/// The request's target without the slash at the end of its path.
+std::string without_last_slash(std::string target) {
+  const std::size_t query = std::min(target.find('?'), target.size());
+  return target.erase(query - 1, 1);
+}
+
 }  // namespace
 
 Admission admit(Head& head, std::string request_id, const Router& router, const ErrorPages& pages,
@@ -60,12 +75,15 @@ Admission admit(Head& head, std::string request_id, const Router& router, const 
         pages.status(400, "the request target is not a path and query in valid percent-encoded UTF-8");
     return admission;
   }
-  request.path = std::move(target->path);
-  request.query = std::move(target->query);
+  request.path = target->path;
+  request.query = target->query;
   RouteMatch match = router.match(head.method, target->segments);
   admission.route = match.route;
   request.path_parameters = std::move(match.path_parameters);
-  if (match.allowed.empty()) {
+  if (match.allowed.empty() && redirects_to_no_slash(head, *target, router)) {
+    // OWSLib puts a slash behind the address of every landing page.
+    admission.answer = Response{308, {{"Location", without_last_slash(head.target)}}, std::string()};
+  } else if (match.allowed.empty()) {
     admission.answer =
         pages.error(tin::base::error(tin::base::Code::kNotFound, "there is nothing at this path"));
   } else if (head.method == Method::kOptions) {

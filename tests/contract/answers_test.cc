@@ -58,7 +58,9 @@ class AnswersTest : public testing::Test {
             {{"GET", "/conformance"}, 200},
             {{"GET", "/conformance?a=1"}, 400},
             {{"GET", "/nothing"}, 404},
-            {{"GET", "/tins/"}, 404},
+            {{"GET", "/tins/"}, 308},
+            {{"GET", "/nothing/"}, 404},
+            {{"POST", "/tins/", "application/json", "{}"}, 404},
             {{"OPTIONS", "/tins"}, 204},
             {{"HEAD", "/tins/hill"}, 200}});
   }
@@ -200,6 +202,20 @@ class AnswersTest : public testing::Test {
             {{"GET", path + "/edges/items/1-2"}, 200},
             {{"GET", path + "/vertices/items/1?crs=EPSG:1"}, 400},
             {{"GET", path + "/vertices/items/99"}, 404},
+            {{"GET", path + "/surface"}, 200},
+            {{"GET", path + "/surface", "", "", "Accept: text/html\r\n"}, 200},
+            {{"GET", path + "/surface?a=1"}, 400},
+            {{"GET", "/tins/empty/collections/surface"}, 404},
+            {{"GET", path + "/surface/coverage?scale-size=x(9),y(9)"}, 200},
+            {{"GET", path + "/surface/coverage?scale-size=x"}, 400},
+            {{"GET", "/tins/local/collections/surface/coverage"}, 404},
+            {{"GET", path + "/surface/coverage?scale-size=x(900),y(900)"}, 413},
+            {{"GET", path + "/surface/coverage/domainset"}, 200},
+            {{"GET", path + "/surface/coverage/domainset?a=1"}, 400},
+            {{"GET", "/tins/local/collections/surface/coverage/domainset"}, 404},
+            {{"GET", path + "/surface/coverage/rangetype"}, 200},
+            {{"GET", path + "/surface/coverage/rangetype?a=1"}, 400},
+            {{"GET", "/tins/empty/collections/surface/coverage/rangetype"}, 404},
             {{"GET", "/tins/hill/conformance"}, 200},
             {{"GET", "/tins/hill/conformance?a=1"}, 400},
             {{"GET", "/tins/none/conformance"}, 404},
@@ -217,6 +233,34 @@ class AnswersTest : public testing::Test {
             {{"GET", path + "/faces/items"}, 404},
             {{"GET", path + "/vertices/items?next=999.1.0.0"}, 410},
             {{"GET", path + "/vertices/items?limit=0"}, 400}});
+  }
+
+  void ask_tiles() {
+    const std::string path = "/tins/hill/";
+    expect({{{"GET", path + "terrain/layer.json"}, 200},
+            {{"GET", path + "terrain/layer.json?a=1"}, 400},
+            {{"GET", "/tins/empty/terrain/layer.json"}, 404},
+            {{"GET", "/tins/local/terrain/layer.json"}, 404},
+            {{"GET", path + "terrain/0/0/0.terrain?v=1"}, 200},
+            {{"GET", path + "terrain/0/1/0.terrain", "", "", "Accept-Encoding: gzip\r\n"}, 200},
+            {{"GET", path + "terrain/0/0/0.terrain?v=x"}, 400},
+            {{"GET", path + "terrain/0/2/0.terrain"}, 404},
+            {{"GET", path + "terrain/99/0/0.terrain"}, 404},
+            {{"GET", path + "terrain/a/0/0.terrain"}, 404},
+            {{"GET", path + "dem/terrarium/tilejson.json"}, 200},
+            {{"GET", path + "dem/mapbox/tilejson.json"}, 200},
+            {{"GET", path + "dem/other/tilejson.json"}, 404},
+            {{"GET", path + "dem/mapbox/tilejson.json?a=1"}, 400},
+            {{"GET", path + "dem/terrarium/0/0/0.png"}, 200},
+            {{"GET", path + "dem/mapbox/0/0/0.png?v=0"}, 200},
+            {{"GET", path + "dem/mapbox/0/0/0.png?v="}, 400},
+            {{"GET", path + "dem/mapbox/0/1/0.png"}, 404},
+            {{"GET", path + "hillshade/tilejson.json"}, 200},
+            {{"GET", path + "hillshade/tilejson.json?a=1"}, 400},
+            {{"GET", "/tins/local/hillshade/tilejson.json"}, 404},
+            {{"GET", path + "hillshade/0/0/0.png"}, 200},
+            {{"GET", path + "hillshade/0/0/0.png?a=1"}, 400},
+            {{"GET", path + "hillshade/0/0/1.png"}, 404}});
   }
 
   void ask_vertices() {
@@ -281,6 +325,8 @@ class AnswersTest : public testing::Test {
     const auto to = [](const std::string& goal) { return R"({"inputs":{"tin":"grid",)" + goal + "}}"; };
     expect({{{"GET", "/processes"}, 200},
             {{"GET", "/processes?a=1"}, 400},
+            {{"GET", "/processes?limit=1"}, 200},
+            {{"GET", "/processes?limit=0"}, 400},
             {{"GET", "/processes/simplify"}, 200},
             {{"GET", "/processes/simplify?a=1"}, 400},
             {{"GET", "/processes/none"}, 404},
@@ -342,6 +388,7 @@ TEST_F(AnswersTest, EveryDocumentedStatusIsGivenAndFitsItsSchema) {
   ask_slopes_and_lines();
   ask_contours_and_volumes();
   ask_collections();
+  ask_tiles();
   ask_vertices();
   ask_exports();
   ask_processes();

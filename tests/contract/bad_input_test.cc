@@ -150,8 +150,8 @@ TEST_F(BadInputTest, UnknownIds) {
   expect_refused(
       {"POST", "/processes/simplify/execution", kJson, R"({"inputs":{"tin":"none","tolerance":1}})"}, 404,
       "not-found", "/inputs/tin");
-  expect_refused({"POST", "/processes/none/execution", kJson, "{}"}, 404, "not-found");
-  expect_refused({"DELETE", "/jobs/none"}, 404, "not-found");
+  expect_refused({"POST", "/processes/none/execution", kJson, "{}"}, 404, "no-such-process");
+  expect_refused({"DELETE", "/jobs/none"}, 404, "no-such-job");
 }
 
 /// The frame of an empty TIN without an origin is fitted to the first vertices, but not to those of a refused

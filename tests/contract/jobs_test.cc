@@ -110,5 +110,21 @@ TEST_F(JobsTest, AResultStandsInADocumentWhereTheRequestSaysSo) {
   EXPECT_EQ(server_.post_json(path, strange).status, 422);
 }
 
+/// The names that OGC API Processes gives to errors.
+TEST_F(JobsTest, WhatThereIsNotIsNamedAsTheStandardSays) {
+  const auto type = [&](const std::string& target) {
+    const RawAnswer answer = server_.get(target);
+    EXPECT_EQ(answer.status, 404) << target;
+    return Json::parse(answer.body).value("type", "");
+  };
+  const std::string base = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/";
+  EXPECT_EQ(type("/processes/none"), base + "no-such-process");
+  EXPECT_EQ(type("/jobs/none"), base + "no-such-job");
+  EXPECT_EQ(type("/jobs/none/results"), base + "no-such-job");
+  auto busy = server_.occupy_worker();
+  const std::string job = server_.upload("/tins?id=new", "text/plain", ascii_grid(3, 3), kAsync).header("location");
+  EXPECT_EQ(type(job + "/results"), base + "result-not-ready");
+}
+
 }  // namespace
 }  // namespace tests::contract

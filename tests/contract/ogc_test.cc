@@ -66,12 +66,22 @@ TEST_F(OgcTest, TheLandingPageLeadsToContractConformanceAndData) {
   EXPECT_EQ(href(landing, "data"), "http://test/tins/hill/collections");
 }
 
+TEST_F(OgcTest, ASlashTooManyLeadsToTheLandingPage) {
+  const RawAnswer answer = server_.get("/tins/hill/?a=b/");
+  EXPECT_EQ(answer.status, 308);
+  EXPECT_EQ(answer.header("location"), "/tins/hill?a=b/");
+  EXPECT_EQ(server_.get("/tins/hill/").header("location"), "/tins/hill");
+  EXPECT_EQ(server_.get("//").status, 404);
+  EXPECT_EQ(server_.ask({"DELETE", "/tins/hill/"}).status, 404);
+}
+
 TEST_F(OgcTest, EveryCollectionSaysWhereItsFeaturesAre) {
   const Json collections = json("/tins/hill/collections");
-  ASSERT_EQ(collections.at("collections").size(), 3u);
+  ASSERT_EQ(collections.at("collections").size(), 4u);
   for (const Json& listed : collections.at("collections")) {
     const Json alone = json(href(listed, "self"));
     EXPECT_EQ(alone, listed);
+    if (listed.at("id") == "surface") continue;  // no features: see below
     EXPECT_EQ(listed.at("itemType"), "feature");
     EXPECT_EQ(listed.at("crs").at(0), kCrs84);
     EXPECT_EQ(listed.at("storageCrs"), kUtm);
@@ -280,6 +290,34 @@ TEST_F(OgcTest, OptionsTellWhatCanBeDone) {
   EXPECT_EQ(server_.ask({"OPTIONS", kVertices}).header("allow"), "GET, HEAD, POST, OPTIONS");
   EXPECT_EQ(server_.ask({"OPTIONS", kVertices + "/1"}).header("allow"), "GET, HEAD, PUT, PATCH, DELETE, OPTIONS");
   EXPECT_EQ(server_.ask({"OPTIONS", kCollections + "/edges/items"}).header("allow"), "GET, HEAD, OPTIONS");
+}
+
+// Coverages -----------------------------------------------------------------------------------------------------------
+
+TEST_F(OgcTest, TheSurfaceIsACoverageOnTheGridThatIsAskedFor) {
+  const Json surface = json(kCollections + "/surface");
+  EXPECT_FALSE(surface.contains("itemType"));
+  const std::string relations = "http://www.opengis.net/def/rel/ogc/1.0/";
+  const Json domain = json(href(surface, relations + "coverage-domainset")).at("generalGrid");
+  EXPECT_EQ(domain.at("srsName"), kCrs84);
+  EXPECT_EQ(json(href(surface, relations + "coverage-rangetype")).at("field").size(), 1u);
+  const std::string target = href(surface, relations + "coverage");
+  const RawAnswer whole = server_.get(target);
+  EXPECT_EQ(whole.header("content-type"), "image/tiff; application=geotiff");
+  EXPECT_EQ(whole.header("content-crs"), std::string("<") + kCrs84 + ">");
+  const std::string part = "?subset=Long(-80.9999:-80.9990),Lat(40.6501:40.6508)";
+  const std::string one = server_.get(target + part + "&scale-size=Long(8),Lat(4)").body;
+  EXPECT_EQ(server_.get(target + part + "&scaleSize=Lat(4),Long(8)").body, one);
+  EXPECT_EQ(server_.get(target + "?bbox=-80.9999,40.6501,-80.9990,40.6508&scale-size=Long(8),Lat(4)").body, one);
+  EXPECT_EQ(server_.get(target + "?crs=" + kLatLon + "&bbox=40.6501,-80.9999,40.6508,-80.9990").header("content-crs"),
+            std::string("<") + kLatLon + ">");
+  for (const char* wrong : {"?subset=Long(1:2", "?subset=Height(1:2)", "?subset=Long(2:1)", "?subset=Long(1:1),Lat(1:1)",
+                            "?scale-size=Long(0)", "?scale-size=Long(1.5)", "?scale-size=Long(1),Long(2)", "?bbox=1,2,3",
+                            "?bbox=1,1,2,2&subset=Long(1:2)", "?crs=EPSG:1", "?scale-size=Long(x)", "?subset=,"}) {
+    EXPECT_EQ(server_.get(target + wrong).status, 400) << wrong;
+  }
+  EXPECT_EQ(server_.get(target + "?scale-size=Long(1000000),Lat(1000000)").status, 413);
+  EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
 }
 
 // Pages for people --------------------------------------------------------------------------------------------------
