@@ -54,7 +54,8 @@ http::ServerOptions http_options(const Config& config) {
   const auto by_cores = static_cast<std::int64_t>(std::max(8U, 2 * std::thread::hardware_concurrency()));
   const std::int64_t for_short = config.http.worker_threads == 0 ? by_cores : config.http.worker_threads;
   const std::int64_t for_long =
-      config.limits.uploads_at_once + config.limits.exports_at_once + config.jobs.sync_waiting;
+      config.limits.uploads_at_once + config.limits.exports_at_once + config.jobs.sync_waiting +
+      config.limits.edits_at_once;
   options.worker_threads = static_cast<int>(for_short + for_long);
   options.header_bytes = static_cast<std::size_t>(config.http.header_bytes);
   options.header_fields = static_cast<std::size_t>(config.http.header_fields);
@@ -129,7 +130,7 @@ int serve(const ServeArguments& arguments) {
   auto store = store::open_sqlite_store(config->data_dir);
   if (!store) return fail(store.error());
   clear_temporary_files(config->data_dir);
-  const auto catalogue = app::Catalogue::open(std::move(*store), config->limits);
+  const auto catalogue = app::Catalogue::open(std::move(*store), config->limits, config->history);
   if (!catalogue) return fail(catalogue.error());
   jobs::JobQueue jobs({static_cast<std::size_t>(config->jobs.workers),
                        static_cast<std::size_t>(config->jobs.queued),

@@ -25,7 +25,8 @@ tin::base::Error system_error(const std::string& what) {
   const int number = errno;
   const std::string detail = what + ": " + std::generic_category().message(number);
   const bool full = number == ENOSPC || number == EDQUOT || number == EFBIG;
-  return tin::base::error(Code::kStorage, full ? std::string(kDiskFull) + ": " + detail : detail);
+  return full ? tin::base::error(Code::kNoSpace, std::string(kDiskFull) + ": " + detail)
+              : tin::base::error(Code::kStorage, detail);
 }
 
 std::string random_name(std::string_view suffix) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "server/store/files.h"
 #include "server/store/store.h"
@@ -16,8 +17,12 @@ struct SqliteOptions {
   /// The most that the database file may grow to, rounded up to pages; past it writes fail with kDiskFull. 0:
   /// no bound but the disk's.
   std::int64_t max_file_bytes = 0;
+  /// Checkpoints up to this size stand in the database, larger ones are files.
+  std::size_t checkpoint_row_bytes = std::size_t{1} << 20;
+  /// SQLite's interface to the system, by name; empty: the usual one. Tests put faults here.
+  std::string vfs = {};
   /// What writes the files beside the database; null: the system. Tests put faults here.
-  std::shared_ptr<Disk> disk;
+  std::shared_ptr<Disk> disk = nullptr;
 };
 
 /// Opens or creates the store of `folder`: tinsmith.sqlite3 with SQLite's files beside it, the folder "files"

@@ -8,6 +8,7 @@
 
 #include "server/app/catalogue.h"
 #include "server/store/store.h"
+#include "tests/server/app/failing_store.h"
 #include "tin/mesh/validate.h"
 #include "tin/query/elevation.h"
 
@@ -27,39 +28,6 @@ using tin::terrain::Duplicates;
 using tin::terrain::Remove;
 using tin::terrain::SetZ;
 using tin::terrain::Terrain;
-
-/// A store in memory that can be told to fail.
-class FailingStore : public server::store::Store {
- public:
-  bool fail = false;
-  std::size_t appended = 0;
-
-  Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view,
-                          std::string_view) override {
-    return status();
-  }
-  Result<void> update_title(std::string_view, std::string_view) override { return status(); }
-  Result<void> remove_tin(std::string_view) override { return status(); }
-  Result<void> append(std::string_view, std::uint64_t, std::string_view,
-                      const server::store::RevisionInfo&) override {
-    if (!fail) ++appended;
-    return status();
-  }
-  Result<void> put_checkpoint(std::string_view, std::uint64_t, std::string_view) override { return status(); }
-  Result<std::vector<server::store::TinRecord>> list() override {
-    return std::vector<server::store::TinRecord>{};
-  }
-  Result<server::store::Loaded> load(std::string_view) override {
-    return tin::base::error(Code::kNotFound, "");
-  }
-  Result<std::string> load_source(std::string_view) override { return std::string(); }
-
- private:
-  Result<void> status() const {
-    if (fail) return tin::base::error(Code::kStorage, "the disk is full");
-    return {};
-  }
-};
 
 Terrain grid_terrain(int side) {
   std::vector<tin::terrain::Placement> placements;
@@ -86,7 +54,7 @@ class TinTest : public testing::Test {
 
 TEST_F(TinTest, EditsAdvanceTheRevisionAndAreJournaled) {
   const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, SetZ{VertexId(1), 4}};
-  const auto edited = tin_.edit(edits, {}, info_);
+  const auto edited = tin_.edit(edits, {{}, info_});
   ASSERT_TRUE(edited.ok());
   EXPECT_EQ(edited->revision, 2U);
   EXPECT_EQ(edited->ids, (std::vector<VertexId>{VertexId(401), VertexId(1)}));
@@ -99,21 +67,21 @@ TEST_F(TinTest, AnEditThatCannotBeStoredIsNeverSeen) {
   store_.fail = true;
   const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, Remove{VertexId(7)},
                                      MoveTo{VertexId(9), 3.3, 3.3}};
-  const auto edited = tin_.edit(edits, {}, info_);
+  const auto edited = tin_.edit(edits, {{}, info_});
   ASSERT_FALSE(edited.ok());
   EXPECT_EQ(edited.error().code, Code::kStorage);
   EXPECT_EQ(digest(), before);
   EXPECT_EQ(tin_.summary().revision, 1U);
   EXPECT_EQ(broken(), "");
   store_.fail = false;
-  ASSERT_TRUE(tin_.edit(edits, {}, info_).ok());
+  ASSERT_TRUE(tin_.edit(edits, {{}, info_}).ok());
   EXPECT_EQ(broken(), "");
 }
 
 TEST_F(TinTest, AnExpectedRevisionThatIsGoneIsRefused) {
   const std::vector<WorldEdit> edit{SetZ{VertexId(1), 4}};
-  ASSERT_TRUE(tin_.edit(edit, std::array<std::uint64_t, 2>{1, 77}, info_).ok());
-  const auto late = tin_.edit(edit, std::array<std::uint64_t, 2>{1, 77}, info_);
+  ASSERT_TRUE(tin_.edit(edit, {expected, info_}).ok());
+  const auto late = tin_.edit(edit, {expected, info_});
   ASSERT_FALSE(late.ok());
   EXPECT_EQ(late.error().code, Code::kPrecondition);
   EXPECT_EQ(broken(), "");
@@ -122,8 +90,8 @@ TEST_F(TinTest, AnExpectedRevisionThatIsGoneIsRefused) {
 TEST_F(TinTest, OneVertexPastTheLimitIsRefused) {
   std::vector<WorldEdit> edits;
   for (int i = 0; i < 100; ++i) edits.push_back(InsertAt{0.001 * (i + 1), 0.5, 1});
-  ASSERT_TRUE(tin_.edit(edits, {}, info_).ok()) << "500 are allowed";
-  const auto more = tin_.edit(std::vector<WorldEdit>{InsertAt{0.7, 0.7, 1}}, {}, info_);
+  ASSERT_TRUE(tin_.edit(edits, {{}, info_}).ok()) << "500 are allowed";
+  const auto more = tin_.edit(std::vector<WorldEdit>{InsertAt{0.7, 0.7, 1}}, {{}, info_});
   ASSERT_FALSE(more.ok());
   EXPECT_EQ(more.error().code, Code::kTooLarge);
   EXPECT_EQ(broken(), "");
@@ -133,7 +101,7 @@ TEST_F(TinTest, AVersionStaysWhatItWasWhileEditsGoOn) {
   const Version version = tin_.version();
   const std::string before = version.terrain->digest();
   for (int i = 0; i < 10; ++i) {
-    ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{InsertAt{0.5 + i, 0.5, 1}}, {}, info_).ok());
+    ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{InsertAt{0.5 + i, 0.5, 1}}, {{}, info_}).ok());
   }
   EXPECT_EQ(version.terrain->digest(), before);
   EXPECT_EQ(version.revision, 1U);
@@ -145,8 +113,8 @@ TEST_F(TinTest, AVersionStaysWhatItWasWhileEditsGoOn) {
 TEST_F(TinTest, PagesGoOnFromAKeptRevisionOnly) {
   tin_.keep_for_pages(tin_.version());
   tin_.drop_expired();
-  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 4}}, {}, info_).ok());
-  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 5}}, {}, info_).ok());
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 4}}, {{}, info_}).ok());
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(1), 5}}, {{}, info_}).ok());
   EXPECT_EQ(tin_.page_version(1)->revision, 1U);
   EXPECT_EQ(tin_.page_version(3)->revision, 3U);
   ASSERT_FALSE(tin_.page_version(2).ok());
@@ -157,7 +125,7 @@ TEST_F(TinTest, PagesGoOnFromAKeptRevisionOnly) {
 TEST_F(TinTest, RemovalsOfAJobLeaveWhatWasEditedMeanwhile) {
   const Version seen = tin_.version();
   ASSERT_TRUE(
-      tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, {}, info_).ok());
+      tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, {{}, info_}).ok());
   std::vector<VertexId> ids;
   for (std::uint64_t id = 22; id < 340; ++id) ids.emplace_back(id);
   const auto landed = tin_.remove_vertices(seen, ids, info_);
@@ -178,7 +146,7 @@ TEST_F(TinTest, RemovalsBuiltAsideEqualRemovalsInPlace) {
     edits.push_back(Remove{VertexId(id)});
   }
   ASSERT_TRUE(tin_.remove_vertices(tin_.version(), many, info_).ok());
-  ASSERT_TRUE(in_place.edit(edits, {}, info_).ok());
+  ASSERT_TRUE(in_place.edit(edits, {{}, info_}).ok());
   EXPECT_EQ(digest(), in_place.read([](const Terrain& t, std::uint64_t) { return t.digest(); }));
   EXPECT_EQ(tin_.summary().triangle_count, in_place.summary().triangle_count);
   EXPECT_EQ(broken(), "");

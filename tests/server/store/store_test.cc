@@ -10,6 +10,7 @@
 namespace server::store {
 namespace {
 
+using testing::append;
 using testing::fails;
 using testing::succeeds;
 using tin::base::Code;
@@ -28,7 +29,7 @@ TEST_P(StoreTest, IsEmptyAtFirst) {
 
 TEST_P(StoreTest, WhatIsPutInComesOut) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "checkpoint")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "record", kInfo)));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "record", kInfo)));
   for (int round = 0; round < 2; ++round) {
     const auto loaded = store_->load("alps");
     ASSERT_TRUE(succeeds(loaded));
@@ -45,8 +46,8 @@ TEST_P(StoreTest, AnyBytesAndAnyTextAreKept) {
   const TinRecord tin{bytes, bytes, -5};
   const RevisionInfo info{-1, bytes, bytes};
   ASSERT_TRUE(succeeds(store_->create_tin(tin, 0, bytes)));
-  ASSERT_TRUE(succeeds(store_->append(bytes, 1, bytes, info)));
-  ASSERT_TRUE(succeeds(store_->append(bytes, 2, "", {})));
+  ASSERT_TRUE(succeeds(append(*store_, bytes, 1, bytes, info)));
+  ASSERT_TRUE(succeeds(append(*store_, bytes, 2, "", {})));
   const auto loaded = store_->load(bytes);
   ASSERT_TRUE(succeeds(loaded));
   EXPECT_EQ(loaded->tin, tin);
@@ -74,7 +75,7 @@ TEST_P(StoreTest, AnIdIsTakenOnce) {
 TEST_P(StoreTest, UnknownTinsAreNotFound) {
   EXPECT_TRUE(fails(store_->load("alps"), Code::kNotFound));
   EXPECT_TRUE(fails(store_->load_source("alps"), Code::kNotFound));
-  EXPECT_TRUE(fails(store_->append("alps", 1, "", {}), Code::kNotFound));
+  EXPECT_TRUE(fails(append(*store_, "alps", 1, "", {}), Code::kNotFound));
   EXPECT_TRUE(fails(store_->put_checkpoint("alps", 1, ""), Code::kNotFound));
   EXPECT_TRUE(fails(store_->update_title("alps", ""), Code::kNotFound));
   EXPECT_TRUE(fails(store_->remove_tin("alps"), Code::kNotFound));
@@ -83,13 +84,13 @@ TEST_P(StoreTest, UnknownTinsAreNotFound) {
 TEST_P(StoreTest, OnlyTheSuccessorIsAppended) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 5, "")));
   for (const std::uint64_t wrong : {0, 4, 5, 7}) {
-    EXPECT_TRUE(fails(store_->append("alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
+    EXPECT_TRUE(fails(append(*store_, "alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
   }
-  ASSERT_TRUE(succeeds(store_->append("alps", 6, "six", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 6, "six", {})));
   for (const std::uint64_t wrong : {5, 6, 8}) {
-    EXPECT_TRUE(fails(store_->append("alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
+    EXPECT_TRUE(fails(append(*store_, "alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
   }
-  ASSERT_TRUE(succeeds(store_->append("alps", 7, "seven", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 7, "seven", {})));
   const auto loaded = store_->load("alps");
   ASSERT_TRUE(succeeds(loaded));
   EXPECT_EQ(loaded->journal, (std::vector<JournalRow>{{6, "six", {}}, {7, "seven", {}}}));
@@ -98,7 +99,7 @@ TEST_P(StoreTest, OnlyTheSuccessorIsAppended) {
 TEST_P(StoreTest, ACheckpointShortensTheReplay) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
   for (std::uint64_t revision = 2; revision <= 4; ++revision) {
-    ASSERT_TRUE(succeeds(store_->append("alps", revision, std::to_string(revision), {})));
+    ASSERT_TRUE(succeeds(append(*store_, "alps", revision, std::to_string(revision), {})));
   }
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 3, "three")));
   for (int round = 0; round < 2; ++round) {
@@ -110,12 +111,12 @@ TEST_P(StoreTest, ACheckpointShortensTheReplay) {
     reopen();
   }
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 4, "four")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 5, "5", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 5, "5", {})));
 }
 
 TEST_P(StoreTest, CheckpointsMoveForwardWithinTheJournal) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "", {})));
   EXPECT_TRUE(fails(store_->put_checkpoint("alps", 3, "three"), Code::kConflict));
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 2, "two")));
   EXPECT_TRUE(fails(store_->put_checkpoint("alps", 1, "one"), Code::kConflict));
@@ -142,7 +143,7 @@ TEST_P(StoreTest, TheSourceStaysAsItWasBesideAllCheckpoints) {
   for (std::size_t i = 0; i < source.size(); ++i) source[i] = static_cast<char>(i * 2654435761U >> 13);
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one", source)));
   ASSERT_TRUE(succeeds(store_->create_tin({"bare", "", 0}, 1, "one")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "two", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "two", {})));
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 2, "two")));
   for (int round = 0; round < 2; ++round) {
     const auto loaded = store_->load_source("alps");
@@ -169,7 +170,7 @@ TEST_P(StoreTest, TitlesChange) {
 TEST_P(StoreTest, ARemovedTinIsGoneAndItsIdFree) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "old")));
   ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "old", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "old", {})));
   ASSERT_TRUE(succeeds(store_->remove_tin("alps")));
   EXPECT_TRUE(fails(store_->load("alps"), Code::kNotFound));
   EXPECT_EQ(store_->list()->size(), 1u);
@@ -190,7 +191,7 @@ TEST_P(StoreTest, ManyThreadsAppendToTheirTins) {
   for (int t = 0; t < kThreads; ++t) {
     threads.emplace_back([&, id = std::to_string(t)] {
       for (std::uint64_t revision = 2; revision < 2 + kAppends; ++revision) {
-        EXPECT_TRUE(succeeds(store_->append(id, revision, id, {})));
+        EXPECT_TRUE(succeeds(append(*store_, id, revision, id, {})));
         EXPECT_TRUE(succeeds(store_->list()));
       }
     });
@@ -206,7 +207,7 @@ TEST_P(StoreTest, OfManyThreadsWithOneRevisionOneWins) {
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&] {
       for (std::uint64_t revision = 2; revision < 22; ++revision) {
-        if (store_->append("alps", revision, "", {}).ok()) ++won;
+        if (append(*store_, "alps", revision, "", {}).ok()) ++won;
       }
     });
   }
