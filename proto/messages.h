@@ -100,15 +100,6 @@ struct ElevationRequest {
 };
 tin::base::Result<ElevationRequest> read_elevation_request(std::string_view body, std::size_t max_positions);
 
-/// POST /processes/simplify/execution; at least one of tolerance and max_vertices is there.
-struct SimplifyRequest {
-  std::string tin;
-  std::optional<double> tolerance;            // >= 0, in the TIN's vertical unit
-  std::optional<std::uint64_t> max_vertices;  // >= 3
-  std::optional<std::string> as;  // id of the TIN to make; without it the TIN itself is simplified
-};
-tin::base::Result<SimplifyRequest> read_simplify_request(std::string_view body);
-
 // Answers -------------------------------------------------------------------------
 
 struct Link {
@@ -199,24 +190,5 @@ struct JobStatus {
 };
 std::string job_json(const JobStatus& job);
 std::string job_list_json(std::span<const JobStatus> jobs, std::span<const Link> links);
-
-/// Paths in the links of both are relative to the server's root, for example "/processes/simplify".
-std::string process_list_json();
-/// Nothing when there is no such process.
-std::optional<std::string> process_json(std::string_view process);
-
-struct SimplifyResults {
-  std::uint64_t vertices_before = 0;
-  std::uint64_t vertices_after = 0;
-  double max_error = 0;                   // in the TIN's vertical unit, over every source sample
-  std::optional<Position2> max_error_at;  // null when every sample lies on the result
-  bool tolerance_met = true;              // false only when max_vertices got in its way
-  bool edited_meanwhile = false;          // edits landed while it worked; the report is about what it saw
-  double rmse = 0;
-  double seconds = 0;
-  std::string tin;
-  std::uint64_t revision = 0;
-};
-std::string simplify_results_json(const SimplifyResults& results);
 
 }  // namespace proto

@@ -6,6 +6,7 @@
 #include "proto/json_read.h"
 #include "proto/messages.h"
 #include "proto/messages_internal.h"
+#include "proto/processes/process.h"
 #include "proto/utf8.h"
 
 namespace proto {
@@ -82,16 +83,6 @@ Result<std::array<double, N>> read_numbers(Value value) {
     numbers[i++] = *number;
   }
   return numbers;
-}
-
-Result<std::optional<std::string>> read_tin_id(const Object& object, std::string_view name) {
-  const auto member = object.find(name);
-  if (!member) return std::optional<std::string>();
-  auto text = member->string(std::numeric_limits<std::size_t>::max());
-  if (!text) return std::move(text).error();
-  if (is_tin_id(*text)) return std::optional(std::string(*text));
-  return member->error(Code::kInvalidValue,
-                       "an id has 1 to 64 letters, digits, - and _, and begins with a letter or digit");
 }
 
 Result<std::optional<std::string>> read_crs(const Object& object) {
@@ -208,31 +199,6 @@ Result<EditOp> read_op(Value value) {
   return read_op_named(*name, *member, value);
 }
 
-Result<void> read_simplify_goals(const Object& inputs, SimplifyRequest& request) {
-  if (const auto member = inputs.find("tolerance")) {
-    auto tolerance = member->number();
-    if (!tolerance) return std::move(tolerance).error();
-    if (*tolerance < 0) return member->error(Code::kInvalidValue, "a tolerance must not be negative");
-    request.tolerance = *tolerance;
-  }
-  if (const auto member = inputs.find("maxVertices")) {
-    auto count = member->integer(3, kMaxId);
-    if (!count) return std::move(count).error();
-    request.max_vertices = static_cast<std::uint64_t>(*count);
-  }
-  if (const auto member = inputs.find("effort")) {
-    auto effort = member->string(kMaxWord);
-    if (!effort) return std::move(effort).error();
-    if (*effort != "fast") {
-      return member->error(Code::kInvalidValue, "there is no such effort; there is: fast");
-    }
-  }
-  if (!request.tolerance && !request.max_vertices) {
-    return error(Code::kInvalidValue, "tolerance or maxVertices must be given", "/inputs");
-  }
-  return {};
-}
-
 }  // namespace
 
 bool is_tin_id(std::string_view id) {
@@ -294,7 +260,7 @@ Result<CreateTin> read_create_tin(std::string_view body, std::size_t max_vertice
       {"id", "title", "crs", "resolution", "origin", "verticalUnit", "duplicates", "vertices"});
   if (!object) return std::move(object).error();
   CreateTin create;
-  auto id = read_tin_id(*object, "id");
+  auto id = read_optional_tin_id(*object, "id");
   if (!id) return std::move(id).error();
   create.id = std::move(*id);
   auto title = read_title(*object);
@@ -363,52 +329,6 @@ Result<ElevationRequest> read_elevation_request(std::string_view body, std::size
     if (!numbers) return std::move(numbers).error();
     request.positions.push_back({(*numbers)[0], (*numbers)[1]});
   }
-  return request;
-}
-
-namespace {
-
-/// One of the words, where the member is there.
-Result<void> check_word(const Object& object, std::string_view name, std::initializer_list<std::string_view> words) {
-  const auto member = object.find(name);
-  if (!member) return {};
-  const auto text = member->string(64);
-  if (!text) return text.error();
-  if (std::find(words.begin(), words.end(), *text) != words.end()) return {};
-  return member->error(Code::kInvalidValue, "this is no word that is known here");
-}
-
-/// What OGC API Processes has beside the inputs changes nothing, but is what it should be.
-Result<void> check_unheeded_members(const Object& object) {
-  if (const auto outputs = object.find("outputs")) {
-    if (const auto fine = outputs->any_object(); !fine) return fine.error();
-  }
-  if (auto fine = check_word(object, "response", {"raw", "document"}); !fine) return fine;
-  return check_word(object, "mode", {"sync", "async", "auto"});
-}
-
-}  // namespace
-
-Result<SimplifyRequest> read_simplify_request(std::string_view body) {
-  auto document = Document::parse(body);
-  if (!document) return std::move(document).error();
-  // Members of OGC API Processes beside the inputs are taken and change nothing: there is one kind of answer.
-  auto object = document->root().object({"inputs", "outputs", "response", "mode"});
-  if (!object) return std::move(object).error();
-  if (auto unheeded = check_unheeded_members(*object); !unheeded) return std::move(unheeded).error();
-  auto member = object->require("inputs");
-  if (!member) return std::move(member).error();
-  auto inputs = member->object({"tin", "tolerance", "maxVertices", "as", "effort"});
-  if (!inputs) return std::move(inputs).error();
-  if (auto tin = inputs->require("tin"); !tin) return std::move(tin).error();
-  SimplifyRequest request;
-  auto tin = read_tin_id(*inputs, "tin");
-  if (!tin) return std::move(tin).error();
-  request.tin = tin->value();
-  auto as = read_tin_id(*inputs, "as");
-  if (!as) return std::move(as).error();
-  request.as = std::move(*as);
-  if (auto goals = read_simplify_goals(*inputs, request); !goals) return std::move(goals).error();
   return request;
 }
 

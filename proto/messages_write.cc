@@ -249,23 +249,4 @@ std::string job_list_json(std::span<const JobStatus> jobs, std::span<const Link>
   return json.take();
 }
 
-std::string simplify_results_json(const SimplifyResults& results) {
-  JsonWriter json;
-  json.begin_object();
-  json.key("verticesBefore").integer(results.vertices_before);
-  json.key("verticesAfter").integer(results.vertices_after);
-  json.key("maxError").number(results.max_error);
-  json.key("maxErrorAt");
-  results.max_error_at ? write_pair(json, results.max_error_at->x, results.max_error_at->y)
-                       : void(json.null());
-  json.key("toleranceMet").boolean(results.tolerance_met);
-  json.key("editedMeanwhile").boolean(results.edited_meanwhile);
-  json.key("rmse").number(results.rmse);
-  json.key("seconds").number(results.seconds);
-  json.key("tin").string(results.tin);
-  json.key("revision").integer(results.revision);
-  json.end_object();
-  return json.take();
-}
-
 }  // namespace proto

@@ -92,5 +92,21 @@ TEST_F(JobsTest, AFinishedSimplificationIsANewRevisionOfTheTinItself) {
   EXPECT_LE(result.at("maxError"), 30);
 }
 
+/// OGC API Processes: the one output's value is the answer, unless it is wanted in a document.
+TEST_F(JobsTest, AResultStandsInADocumentWhereTheRequestSaysSo) {
+  ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+  const std::string path = "/processes/simplify/execution";
+  const std::string body =
+      R"({"inputs":{"tin":"grid","tolerance":30},"response":"document","outputs":{"result":{}}})";
+  const RawAnswer sync = server_.post_json(path, body);
+  ASSERT_EQ(sync.status, 200);
+  EXPECT_EQ(Json::parse(sync.body).at("result").at("revision"), 2);
+  const std::string job = server_.post_json(path, body, kAsync).header("location");
+  EXPECT_EQ(finished(job), "successful");
+  EXPECT_EQ(Json::parse(server_.get(job + "/results").body).at("result").at("tin"), "grid");
+  const std::string strange = R"({"inputs":{"tin":"grid","tolerance":30},"outputs":{"tin":{}}})";
+  EXPECT_EQ(server_.post_json(path, strange).status, 422);
+}
+
 }  // namespace
 }  // namespace tests::contract

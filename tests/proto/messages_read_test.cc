@@ -4,6 +4,7 @@
 #include <random>
 
 #include "proto/messages.h"
+#include "proto/processes/simplify.h"
 #include "tests/support/schema_check.h"
 
 namespace {
@@ -162,41 +163,10 @@ TEST(ElevationRequestTest, ReadsPositionsAndSaysWhatIsWrong) {
       [](const char* body) { return proto::read_elevation_request(body, 2); });
 }
 
-TEST(SimplifyRequestTest, ReadsInputsAndToleratesWhatOgcAdds) {
-  const auto request = proto::read_simplify_request(
-                           R"({"inputs":{"tin":"a","tolerance":0,"maxVertices":3,"as":"b","effort":"fast"},)"
-                           R"("outputs":{"tin":{}},"response":"document","mode":"async"})")
-                           .value();
-  EXPECT_EQ(request.tin, "a");
-  EXPECT_EQ(request.tolerance, 0);
-  EXPECT_EQ(request.max_vertices, 3U);
-  EXPECT_EQ(request.as, "b");
-  const auto small = proto::read_simplify_request(R"({"inputs":{"tin":"a","maxVertices":1000}})").value();
-  EXPECT_FALSE(small.tolerance || small.as);
-}
-
-TEST(SimplifyRequestTest, ErrorsSayWhere) {
-  expect_errors(
-      {
-          {"{}", Code::kMalformed, ""},
-          {R"({"inputs":{"tolerance":1}})", Code::kMalformed, "/inputs"},
-          {R"({"inputs":{"tin":"a"}})", Code::kInvalidValue, "/inputs"},
-          {R"({"inputs":{"tin":"a b","tolerance":1}})", Code::kInvalidValue, "/inputs/tin"},
-          {R"({"inputs":{"tin":"a","tolerance":-1}})", Code::kInvalidValue, "/inputs/tolerance"},
-          {R"({"inputs":{"tin":"a","tolerance":1e999}})", Code::kNotFinite, "/inputs/tolerance"},
-          {R"({"inputs":{"tin":"a","tolerance":"1"}})", Code::kMalformed, "/inputs/tolerance"},
-          {R"({"inputs":{"tin":"a","maxVertices":2}})", Code::kInvalidValue, "/inputs/maxVertices"},
-          {R"({"inputs":{"tin":"a","maxVertices":10.5}})", Code::kMalformed, "/inputs/maxVertices"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"effort":"best"}})", Code::kInvalidValue, "/inputs/effort"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"as":""}})", Code::kInvalidValue, "/inputs/as"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"speed":9}})", Code::kMalformed, "/inputs/speed"},
-          {R"({"inputs":{"tin":"a","tolerance":1},"priority":1})", Code::kMalformed, "/priority"},
-      },
-      [](const char* body) { return proto::read_simplify_request(body); });
-  EXPECT_NE(proto::read_simplify_request(R"({"inputs":{"tin":"a","tolerance":1,"effort":"best"}})")
-                .error()
-                .message.find("fast"),
-            std::string::npos);
+tin::base::Result<proto::SimplifyInputs> read_simplify(const std::string& body) {
+  const auto request = proto::ExecutionRequest::read(body);
+  if (!request) return request.error();
+  return proto::read_simplify_inputs(request->inputs());
 }
 
 /// Bytes changed at random: anything may be said of them, but nothing may crash, and accepted values are
@@ -242,7 +212,7 @@ TEST(HostileBodiesTest, RandomlyChangedBytesDoNoHarm) {
     expect_contract(proto::read_create_tin(body, 10).ok(), "/tins");
     expect_contract(proto::read_edit_request(body, 10).ok(), "/tins/{tin}/edits");
     expect_contract(proto::read_elevation_request(body, 10).ok(), "/tins/{tin}/elevation");
-    expect_contract(proto::read_simplify_request(body).ok(), "/processes/{process}/execution");
+    expect_contract(read_simplify(body).ok(), "/processes/{process}/execution");
   }
   EXPECT_GT(accepted, 100);  // otherwise nothing but the first byte is being tested
 }

@@ -100,14 +100,6 @@ TEST(AnswersTest, OfCollectionsKeepTheContract) {
   expect_clean(violations("GET", "/tins/{tin}/collections", 200, both), both);
 }
 
-TEST(AnswersTest, OfProcessesKeepTheContract) {
-  const std::string list = proto::process_list_json();
-  expect_clean(violations("GET", "/processes", 200, list), list);
-  const std::string simplify = proto::process_json("simplify").value();
-  expect_clean(violations("GET", "/processes/{process}", 200, simplify), simplify);
-  EXPECT_FALSE(proto::process_json("magnify").has_value());
-}
-
 TEST(AnswersTest, OfJobsKeepTheContract) {
   using proto::JobState;
   std::vector<proto::JobStatus> jobs;
@@ -128,17 +120,6 @@ TEST(AnswersTest, OfJobsKeepTheContract) {
   }
   const std::string list = proto::job_list_json(jobs, {});
   expect_clean(violations("GET", "/jobs", 200, list), list);
-}
-
-TEST(AnswersTest, OfSimplifyKeepTheContract) {
-  proto::SimplifyResults results{1442401, 17250,  9.99, proto::Position2{-71.5, 44.25}, true, false,
-                                 3.5,     11.25, "hill", 5};
-  EXPECT_EQ(proto::simplify_results_json(results),
-            R"({"verticesBefore":1442401,"verticesAfter":17250,"maxError":9.99,"maxErrorAt":[-71.5,44.25],)"
-            R"("toleranceMet":true,"editedMeanwhile":false,"rmse":3.5,"seconds":11.25,"tin":"hill","revision":5})");
-  results.max_error_at.reset();
-  const std::string json = proto::simplify_results_json(results);
-  expect_clean(violations("GET", "/jobs/{job}/results", 200, json), json);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "proto/messages.h"
@@ -24,33 +23,6 @@ TEST(OpenApiTest, TheProgramHoldsTheFileByteForByte) {
 
 TEST(OpenApiTest, EveryExampleFitsItsSchema) {
   for (const std::string& line : tests_support::example_violations()) ADD_FAILURE() << line;
-}
-
-TEST(OpenApiTest, TheOperationsOfThisVersionAreThere) {
-  const auto operations = tests_support::documented_operations();
-  const std::set<std::string> documented(operations.begin(), operations.end());
-  EXPECT_EQ(documented, (std::set<std::string>{"GET /",
-                                               "GET /healthz",
-                                               "GET /api",
-                                               "GET /conformance",
-                                               "GET /tins",
-                                               "POST /tins",
-                                               "GET /tins/{tin}",
-                                               "DELETE /tins/{tin}",
-                                               "POST /tins/{tin}/edits",
-                                               "GET /tins/{tin}/elevation",
-                                               "POST /tins/{tin}/elevation",
-                                               "GET /tins/{tin}/collections",
-                                               "GET /tins/{tin}/collections/{collection}",
-                                               "GET /tins/{tin}/collections/{collection}/items",
-                                               "GET /tins/{tin}/export",
-                                               "GET /processes",
-                                               "GET /processes/{process}",
-                                               "POST /processes/{process}/execution",
-                                               "GET /jobs",
-                                               "GET /jobs/{job}",
-                                               "DELETE /jobs/{job}",
-                                               "GET /jobs/{job}/results"}));
 }
 
 TEST(OpenApiTest, TheDocumentDescribesItself) {
