@@ -118,7 +118,7 @@ tin::base::Error Tin::explain_conflict(std::uint64_t revision, const Change& inv
   std::string why = "Revision " + std::to_string(revision) + " cannot be undone: ";
   const auto index = conflict.where.size() > 1 ? std::stoull(conflict.where.substr(1)) : inverse.steps.size();
   if (index >= inverse.steps.size()) return error(Code::kConflict, why + conflict.message);
-  const VertexId id = inverse.steps[index].id;
+  const VertexId vertex = inverse.steps[index].id;
   std::size_t searched = 0;
   for (std::uint64_t first = revision + 1; searched < kSearched;) {
     const auto rows = store_.read_journal(id(), {.first = first, .most_bytes = kReadBytes});
@@ -127,17 +127,17 @@ tin::base::Error Tin::explain_conflict(std::uint64_t revision, const Change& inv
       const auto change = tin::codec::decode_change(row.record);
       if (!change) break;
       const bool touched = std::any_of(change->steps.begin(), change->steps.end(),
-                                       [&](const tin::terrain::Step& step) { return step.id == id; });
+                                       [&](const tin::terrain::Step& step) { return step.id == vertex; });
       if (touched) {
-        return error(Code::kConflict, why + name_of(id) + " was changed again by revision " +
+        return error(Code::kConflict, why + name_of(vertex) + " was changed again by revision " +
                                           std::to_string(row.revision) + "; undo that one first.");
       }
       searched += row.record.size() + 64;
     }
     first = rows->back().revision + 1;
   }
-  if (!inverse.steps[index].before) why += "another vertex stands where " + name_of(id) + " would return to.";
-  else why += name_of(id) + " has been changed since.";
+  if (inverse.steps[index].before) return error(Code::kConflict, why + name_of(vertex) + " has been changed since.");
+  why += "another vertex stands where " + name_of(vertex) + " would return to.";
   return error(Code::kConflict, why);
 }
 

@@ -11,6 +11,7 @@
 #include "server/api/answer.h"
 #include "server/api/routes.h"
 #include "server/app/catalogue.h"
+#include "server/app/stored_jobs.h"
 #include "server/config.h"
 #include "server/http/server.h"
 #include "server/jobs/job_queue.h"
@@ -132,9 +133,13 @@ int serve(const ServeArguments& arguments) {
   clear_temporary_files(config->data_dir);
   const auto catalogue = app::Catalogue::open(std::move(*store), config->limits, config->history);
   if (!catalogue) return fail(catalogue.error());
+  app::StoredJobs memory((*catalogue)->store());
+  const auto earlier = memory.recall();
+  if (!earlier) return fail(earlier.error());
   jobs::JobQueue jobs({static_cast<std::size_t>(config->jobs.workers),
                        static_cast<std::size_t>(config->jobs.queued),
-                       static_cast<std::size_t>(config->jobs.kept)});
+                       static_cast<std::size_t>(config->jobs.kept)},
+                      &memory, *earlier);
   api::Context context{**catalogue, jobs, *config};
   http::Server server(http_options(*config), api::make_router(context), api::error_pages(), observer());
   const auto port = server.start();

@@ -255,7 +255,7 @@ Result<void> upsert_job(Database& database, const JobRow& job) {
       " message = excluded.message, error = excluded.error, error_where = excluded.error_where,"
       " result = excluded.result");
   query.bind_text(job.id).bind_text(job.kind).bind_text(job.description).bind(job.state).bind(job.created_ms);
-  query.bind(job.started_ms).bind(job.finished_ms).bind_text(job.message).bind(job.error);
+  query.bind(job.started_ms).bind(job.finished_ms).bind_text(job.message).bind_text(job.error);
   return query.bind_text(job.where).bind_text(job.result).run();
 }
 
@@ -269,7 +269,7 @@ Result<std::vector<JobRow>> read_jobs(Database& database) {
     if (!row.ok()) return row.error();
     if (!*row) return jobs;
     jobs.push_back({query.bytes(0), query.bytes(1), query.bytes(2), query.integer(3), query.integer(4),
-                    query.integer(5), query.integer(6), query.bytes(7), query.integer(8), query.bytes(9),
+                    query.integer(5), query.integer(6), query.bytes(7), query.bytes(8), query.bytes(9),
                     query.bytes(10)});
   }
 }

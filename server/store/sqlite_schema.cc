@@ -65,7 +65,7 @@ CREATE TABLE job(
   started_ms INTEGER NOT NULL,
   finished_ms INTEGER NOT NULL,
   message TEXT NOT NULL,
-  error INTEGER NOT NULL,
+  error TEXT NOT NULL,
   error_where TEXT NOT NULL,
   result TEXT NOT NULL);
 )sql"};

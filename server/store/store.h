@@ -103,8 +103,8 @@ struct JobRow {
   std::int64_t started_ms = 0;
   std::int64_t finished_ms = 0;
   std::string message;
-  std::int64_t error = -1;  // the code of its error; -1: none
-  std::string where;        // of its error
+  std::string error;  // what kind of error it met; empty: none
+  std::string where;  // of its error
   std::string result;
   friend bool operator==(const JobRow&, const JobRow&) = default;
 };

@@ -1,8 +1,10 @@
 // A store in memory that can be told to fail.
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <mutex>
+#include <thread>
 
 #include "server/store/store.h"
 
@@ -18,6 +20,7 @@ class FailingStore : public server::store::Store {
   using JournalRow = server::store::JournalRow;
 
   bool fail = false;
+  std::chrono::milliseconds delay{0};  // of a commit
   std::size_t appended = 0;  // revisions
   std::size_t commits = 0;
 
@@ -28,6 +31,7 @@ class FailingStore : public server::store::Store {
   Result<void> update_title(std::string_view, std::string_view) override { return status(); }
   Result<void> remove_tin(std::string_view) override { return status(); }
   Result<void> append(std::string_view, std::span<const Entry> entries) override {
+    std::this_thread::sleep_for(delay);
     const std::lock_guard guard(mutex_);
     if (fail) return status();
     ++commits;

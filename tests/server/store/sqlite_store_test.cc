@@ -110,6 +110,30 @@ TEST_F(SqliteStoreTest, DamagedAndMissingSourcesAreReported) {
   }
 }
 
+TEST_F(SqliteStoreTest, LargeCheckpointsAreFilesAndOldOnesGo) {
+  store_.reset();
+  store_ = *open_sqlite_store(folder_.path(), {.checkpoint_row_bytes = 100});
+  const std::filesystem::path files = folder_.path() / "files";
+  const auto count = [&] { return std::distance(std::filesystem::directory_iterator(files), {}); };
+  const std::string second(1000, '2'), third(1000, '3');
+  ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, second)));
+  EXPECT_EQ(count(), 1);
+  ASSERT_TRUE(succeeds(append(*store_, "b", 2, "two")));
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("b", 2, third)));
+  EXPECT_EQ(count(), 1);
+  EXPECT_EQ(store_->load("b")->checkpoint, third);
+  EXPECT_TRUE(fails(store_->put_checkpoint("b", 9, second), Code::kConflict));
+  EXPECT_EQ(count(), 1);
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("b", 2, "small")));
+  EXPECT_EQ(count(), 0);
+  EXPECT_EQ(store_->load("b")->checkpoint, "small");
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("b", 2, third)));
+  for (const auto& entry : std::filesystem::directory_iterator(files)) {
+    std::ofstream(entry.path(), std::ios::trunc) << std::string(1000, '4');
+  }
+  EXPECT_TRUE(fails(store_->load("b"), Code::kStorage));
+}
+
 TEST_F(SqliteStoreTest, FilesThatNoRowNamesAreRemovedAtTheStart) {
   ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b", "the source of b")));
   const std::filesystem::path files = folder_.path() / "files";
@@ -124,8 +148,10 @@ TEST_F(SqliteStoreTest, FilesThatNoRowNamesAreRemovedAtTheStart) {
 
 TEST_F(SqliteStoreTest, AnOlderStoreIsBroughtUpToDate) {
   tamper(
-      "ALTER TABLE tin DROP COLUMN source_file; ALTER TABLE tin DROP COLUMN source_bytes;"
-      "ALTER TABLE tin DROP COLUMN source_crc; PRAGMA user_version = 1");
+      "DROP TABLE answer; DROP TABLE job; ALTER TABLE tin DROP COLUMN checkpoint_file;"
+      "ALTER TABLE tin DROP COLUMN checkpoint_crc; ALTER TABLE tin DROP COLUMN source_file;"
+      "ALTER TABLE tin DROP COLUMN source_bytes; ALTER TABLE tin DROP COLUMN source_crc;"
+      "PRAGMA user_version = 1");
   reopen();
   EXPECT_EQ(store_->load("alps")->journal.size(), 2U);
   EXPECT_EQ(store_->load_source("alps").value(), "");

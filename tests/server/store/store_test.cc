@@ -216,5 +216,144 @@ TEST_P(StoreTest, OfManyThreadsWithOneRevisionOneWins) {
   EXPECT_EQ(store_->load("alps")->journal.size(), 20u);
 }
 
+TEST_P(StoreTest, EntriesComeTogetherOrNotAtAll) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  const Answer answer{"key", "request", "answer", 5};
+  const std::vector<Entry> two{{JournalRow{2, "two", kInfo}, answer}, {JournalRow{3, "three", {}}, std::nullopt}};
+  ASSERT_TRUE(succeeds(store_->append("alps", two)));
+  const std::vector<Entry> gap{{JournalRow{4, "four", {}}, std::nullopt}, {JournalRow{6, "six", {}}, std::nullopt}};
+  EXPECT_TRUE(fails(store_->append("alps", gap), Code::kConflict));
+  const std::vector<Entry> again{{JournalRow{4, "four", {}}, Answer{"key", "other", "", 6}}};
+  EXPECT_TRUE(fails(store_->append("alps", again), Code::kConflict));
+  for (int round = 0; round < 2; ++round) {
+    EXPECT_EQ(store_->load("alps")->journal.size(), 2u);
+    EXPECT_EQ(store_->find_answer("alps", "key").value(), answer);
+    EXPECT_EQ(store_->find_answer("alps", "other").value(), std::nullopt);
+    reopen();
+  }
+  EXPECT_TRUE(fails(store_->find_answer("none", "key"), Code::kNotFound));
+}
+
+TEST_P(StoreTest, AnEntryMayBringTheCheckpointThatItStandsOn) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "open")));
+  const std::vector<Entry> first{{JournalRow{2, "two", {}}, std::nullopt, "fitted"}};
+  ASSERT_TRUE(succeeds(store_->append("alps", first)));
+  reopen();
+  const auto loaded = store_->load("alps");
+  ASSERT_TRUE(succeeds(loaded));
+  EXPECT_EQ(loaded->checkpoint, "fitted");
+  EXPECT_EQ(loaded->checkpoint_revision, 1u);
+  EXPECT_EQ(loaded->journal.size(), 1u);
+}
+
+TEST_P(StoreTest, TheJournalIsReadInPartsFromEitherEnd) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  for (std::uint64_t revision = 2; revision <= 9; ++revision)
+    ASSERT_TRUE(succeeds(append(*store_, "alps", revision, std::string(100, 'r'))));
+  const auto revisions = [&](const JournalRange& range) {
+    std::vector<std::uint64_t> out;
+    const auto rows = store_->read_journal("alps", range);
+    EXPECT_TRUE(succeeds(rows));
+    for (const JournalRow& row : *rows) out.push_back(row.revision);
+    return out;
+  };
+  using Numbers = std::vector<std::uint64_t>;
+  EXPECT_EQ(revisions({.first = 4, .last = 6}), (Numbers{4, 5, 6}));
+  EXPECT_EQ(revisions({.first = 8}), (Numbers{8, 9}));
+  EXPECT_EQ(revisions({.newest_first = true, .most_rows = 2}), (Numbers{9, 8}));
+  EXPECT_EQ(revisions({.last = 5, .newest_first = true, .most_bytes = 150}), (Numbers{5, 4}));
+  EXPECT_EQ(revisions({.most_bytes = 1}), (Numbers{2})) << "one in any case";
+  EXPECT_EQ(revisions({.first = 10}), (Numbers{}));
+  EXPECT_TRUE(fails(store_->read_journal("none", {}), Code::kNotFound));
+}
+
+TEST_P(StoreTest, TrimmingForgetsWhatTheCheckpointHolds) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  for (std::uint64_t revision = 2; revision <= 9; ++revision)
+    ASSERT_TRUE(succeeds(append(*store_, "alps", revision, std::string(100, 'r'))));
+  const auto first = [&] { return store_->journal_extent("alps")->first; };
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 3})));
+  EXPECT_EQ(first(), 2u) << "the checkpoint is older";
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 8, "eight")));
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 6})));
+  EXPECT_EQ(first(), 4u);
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.bytes = 399})));
+  EXPECT_EQ(first(), 7u);
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 0})));
+  EXPECT_EQ(first(), 9u) << "what follows the checkpoint stays";
+  reopen();
+  EXPECT_EQ(store_->load("alps")->journal.size(), 1u);
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 9, "nine")));
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 0})));
+  EXPECT_EQ(first(), 0u);
+  EXPECT_EQ(store_->journal_extent("alps")->last, 9u);
+  EXPECT_TRUE(succeeds(append(*store_, "alps", 10, "ten")));
+}
+
+TEST_P(StoreTest, OldAndSurplusAnswersAreForgotten) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  for (int i = 0; i < 10; ++i) {
+    const Entry entry{std::nullopt, Answer{std::to_string(i), "", "", 100 + i}};
+    ASSERT_TRUE(succeeds(store_->append("alps", {&entry, 1})));
+  }
+  const auto kept = [&] {
+    std::string keys;
+    for (int i = 0; i < 10; ++i) {
+      if (*store_->find_answer("alps", std::to_string(i))) keys += std::to_string(i);
+    }
+    return keys;
+  };
+  ASSERT_TRUE(succeeds(store_->trim_answers(103, 100)));
+  EXPECT_EQ(kept(), "3456789");
+  ASSERT_TRUE(succeeds(store_->trim_answers(0, 2)));
+  EXPECT_EQ(kept(), "89");
+  ASSERT_TRUE(succeeds(store_->remove_tin("alps")));
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  EXPECT_EQ(kept(), "") << "a TIN of the same id later is another one";
+}
+
+TEST_P(StoreTest, JobsAreKeptInTheirOrder) {
+  JobRow first{"z", "simplify", "alps", 0, 1, 0, 0, "waiting", "", "", ""};
+  const JobRow second{"a", "import", "file", 2, 2, 3, 4, "done", "", "", "{}"};
+  ASSERT_TRUE(succeeds(store_->put_job(first)));
+  ASSERT_TRUE(succeeds(store_->put_job(second)));
+  first.state = 3;
+  first.started_ms = 5;
+  first.finished_ms = 6;
+  first.message = "failed";
+  first.error = "too-large";
+  first.where = "/inputs";
+  ASSERT_TRUE(succeeds(store_->put_job(first)));
+  reopen();
+  EXPECT_EQ(store_->list_jobs().value(), (std::vector<JobRow>{first, second}));
+  ASSERT_TRUE(succeeds(store_->remove_job("z")));
+  EXPECT_EQ(store_->list_jobs().value(), (std::vector<JobRow>{second}));
+}
+
+TEST_P(StoreTest, WritesThatComeAtOneTimeShareCommits) {
+  constexpr int kThreads = 16;
+  constexpr std::uint64_t kAppends = 30;
+  for (int t = 0; t < kThreads; ++t)
+    ASSERT_TRUE(succeeds(store_->create_tin({std::to_string(t), "", 0}, 1, "")));
+  const auto before = store_->counts();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&, id = std::to_string(t)] {
+      for (std::uint64_t revision = 2; revision < 2 + kAppends; ++revision) {
+        EXPECT_TRUE(succeeds(append(*store_, id, revision, id)));
+        if (revision % 10 == 0) {  // one that fails takes no other with it
+          EXPECT_TRUE(fails(append(*store_, id, revision, id), Code::kConflict));
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  const auto after = store_->counts();
+  EXPECT_EQ(after.writes - before.writes, kThreads * kAppends);
+  EXPECT_LT(after.commits - before.commits, kThreads * kAppends / 2);
+  reopen();
+  for (int t = 0; t < kThreads; ++t) EXPECT_EQ(store_->load(std::to_string(t))->journal.size(), kAppends);
+}
+
 }  // namespace
 }  // namespace server::store
