@@ -123,6 +123,7 @@ int serve(const ServeArguments& arguments) {
   sigaddset(&signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error of the write, not an end of the server
 
   std::error_code unmade;
   std::filesystem::create_directories(config->data_dir, unmade);

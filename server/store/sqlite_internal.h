@@ -25,8 +25,11 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// `vfs` names SQLite's interface to the system; empty: the usual one. Errors: kStorage. To be called once.
-  tin::base::Result<void> open(const std::filesystem::path& file, const std::string& vfs = {});
+  enum class Access { kWrite, kRead };
+  /// `vfs` names SQLite's interface to the system; empty: the usual one. For reading, the file must be there, and is
+  /// left as it is. Errors: kStorage. To be called once.
+  tin::base::Result<void> open(const std::filesystem::path& file, const std::string& vfs = {},
+                               Access access = Access::kWrite);
 
   /// The query of `sql`, a literal, prepared once and used again. At most one Query per literal at a time.
   Query query(const char* sql);

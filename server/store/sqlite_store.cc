@@ -21,9 +21,11 @@ using tin::base::Result;
 // committed. So no read waits for a sync.
 class SqliteStore : public Store {
  public:
+  SqliteStore() = default;
   explicit SqliteStore(DataLock lock) : lock_(std::move(lock)) {}
 
   Result<void> open(const std::filesystem::path& folder, const SqliteOptions& options);
+  Result<void> open_for_reading(const std::filesystem::path& folder);
 
   Result<void> create_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint,
                           std::string_view source) override;
@@ -46,8 +48,8 @@ class SqliteStore : public Store {
   Result<void> remove_job(std::string_view id) override;
   Result<std::vector<JobRow>> list_jobs() override;
 
-  Result<void> writable() const override { return committer_->writable(); }
-  Counts counts() const override { return {committer_->commits(), committer_->writes()}; }
+  Result<void> writable() const override;
+  Counts counts() const override;
 
  private:
   Result<void> open_database(const std::filesystem::path& file, const SqliteOptions& options);
@@ -56,16 +58,17 @@ class SqliteStore : public Store {
   /// Removes files that a failed write leaves without a row. Where a failing disk left it open whether the row
   /// is there, they stay, and the next start decides.
   void drop_unnamed(const Result<void>& written, std::span<const FileReference> files);
+  Result<void> commit(const Committer::Work& work);
   template <class Step>
   Result<void> change(std::string_view tin, Step step);
 
-  DataLock lock_;  // outlives the connections
+  std::optional<DataLock> lock_;  // outlives the connections
   std::size_t row_bytes_ = 0;
   std::optional<Files> files_;
   Database writing_;
   std::mutex reading_mutex_;
   Database reading_;
-  std::optional<Committer> committer_;  // last: its thread uses the rest
+  std::optional<Committer> committer_;  // last: its thread uses the rest; none: only reading
 };
 
 Result<void> SqliteStore::open(const std::filesystem::path& folder, const SqliteOptions& options) {
@@ -94,6 +97,25 @@ Result<void> SqliteStore::open_database(const std::filesystem::path& file, const
   return reading_.execute("PRAGMA query_only = ON");
 }
 
+Result<void> SqliteStore::open_for_reading(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "tinsmith.sqlite3";
+  auto opened = reading_.open(file, {}, Database::Access::kRead);
+  if (opened.ok()) opened = check_schema(reading_);
+  if (!opened.ok()) return tin::base::error(opened.error().code, file.string() + ": " + opened.error().message);
+  auto files = Files::open(folder / "files", std::make_shared<Disk>());
+  if (!files.ok()) return files.error();
+  files_ = *std::move(files);
+  return {};
+}
+
+Result<void> SqliteStore::writable() const {
+  return committer_ ? committer_->writable() : tin::base::error(Code::kStorage, "opened for reading");
+}
+
+Store::Counts SqliteStore::counts() const {
+  return committer_ ? Counts{committer_->commits(), committer_->writes()} : Counts{};
+}
+
 Result<void> SqliteStore::limit_size(std::int64_t bytes) {
   if (bytes <= 0) return {};
   const auto page = writing_.number("PRAGMA page_size");
@@ -115,10 +137,15 @@ void SqliteStore::drop_unnamed(const Result<void>& written, std::span<const File
   for (const FileReference& file : files) files_->remove(file.name);
 }
 
+Result<void> SqliteStore::commit(const Committer::Work& work) {
+  if (!committer_) return tin::base::error(Code::kStorage, "the store was opened for reading");
+  return committer_->commit(work);
+}
+
 /// One write to a TIN: step(database, head). Errors: kNotFound, and those of the step.
 template <class Step>
 Result<void> SqliteStore::change(std::string_view tin, Step step) {
-  return committer_->commit([&](Database& database) -> Result<void> {
+  return commit([&](Database& database) -> Result<void> {
     auto head = read_head(database, tin);
     if (!head.ok()) return head.error();
     return step(database, *head);
@@ -139,7 +166,7 @@ Result<void> SqliteStore::create_tin(const TinRecord& tin, std::uint64_t revisio
     return placed.error();
   }
   files[1] = placed->file;
-  auto made = committer_->commit(
+  auto made = commit(
       [&](Database& database) { return insert_tin(database, tin, revision, *placed, files[0]); });
   drop_unnamed(made, files);
   return made;
@@ -201,7 +228,7 @@ Result<void> SqliteStore::trim_journal(std::string_view tin, const Retention& ke
 }
 
 Result<void> SqliteStore::trim_answers(std::int64_t before_ms, std::uint64_t most) {
-  return committer_->commit(
+  return commit(
       [&](Database& database) { return trim_answer_rows(database, before_ms, most); });
 }
 
@@ -267,11 +294,11 @@ Result<std::optional<Answer>> SqliteStore::find_answer(std::string_view tin, std
 }
 
 Result<void> SqliteStore::put_job(const JobRow& job) {
-  return committer_->commit([&](Database& database) { return upsert_job(database, job); });
+  return commit([&](Database& database) { return upsert_job(database, job); });
 }
 
 Result<void> SqliteStore::remove_job(std::string_view id) {
-  return committer_->commit([&](Database& database) {
+  return commit([&](Database& database) {
     return database.query("DELETE FROM job WHERE id = ?").bind_text(id).run();
   });
 }
@@ -292,6 +319,14 @@ Result<std::unique_ptr<Store>> open_sqlite_store(const std::filesystem::path& fo
   if (!lock.ok()) return std::move(lock).error();
   auto store = std::make_unique<SqliteStore>(*std::move(lock));
   if (auto opened = store->open(folder, options); !opened.ok()) return std::move(opened).error();
+  return std::unique_ptr<Store>(std::move(store));
+}
+
+Result<std::unique_ptr<Store>> open_sqlite_store_for_reading(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "tinsmith.sqlite3"))
+    return tin::base::error(Code::kNotFound, "there is no store in " + folder.string());
+  auto store = std::make_unique<SqliteStore>();
+  if (auto opened = store->open_for_reading(folder); !opened.ok()) return std::move(opened).error();
   return std::unique_ptr<Store>(std::move(store));
 }
 

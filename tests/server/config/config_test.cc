@@ -57,7 +57,7 @@ TEST(ConfigTest, EveryNumberOfTheExampleCounts) {
 
 TEST(ConfigTest, TheExampleHasEveryKey) {
   constexpr std::size_t kNumbers =
-      (sizeof(LimitConfig) + sizeof(JobConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
+      (sizeof(LimitConfig) + sizeof(JobConfig) + sizeof(HistoryConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
   EXPECT_EQ(example().flatten().size(), kNumbers + 3);  // and listen, data_dir, log_level
 }
 
