@@ -97,6 +97,7 @@ Bar measure(const Experiment& experiment, const std::string& method) {
       .add("comparisons", count(counters.comparisons))
       .add("filter_failures", count(counters.filter_failures))
       .add("exact_evaluations", count(counters.exact_evaluations))
+      .add("gmp_evaluations", count(counters.gmp_evaluations))
       .add("power_ties", count(counters.power_ties))
       .print();
   return {method, best.cpu_s(), count(counters.in_circle_tests), count(counters.power_computations + counters.power_updates)};

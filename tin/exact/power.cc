@@ -1,6 +1,9 @@
 #include "tin/exact/power.h"
 
+#include <gmp.h>
+
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <utility>
 
@@ -9,13 +12,25 @@
 namespace tin::exact {
 namespace {
 
-/// An unsigned product of up to 192 bits, most significant limb first.
-using Limbs = std::array<std::uint64_t, 3>;
+int width(Uint128 value) {
+  const auto high = static_cast<std::uint64_t>(value >> 64);
+  return high != 0 ? 64 + std::bit_width(high) : std::bit_width(static_cast<std::uint64_t>(value));
+}
 
-Limbs multiply(Uint128 a, std::uint64_t b) {
-  const Uint128 low = static_cast<Uint128>(static_cast<std::uint64_t>(a)) * b;
-  const Uint128 high = static_cast<Uint128>(static_cast<std::uint64_t>(a >> 64)) * b + (low >> 64);
-  return {static_cast<std::uint64_t>(high >> 64), static_cast<std::uint64_t>(high), static_cast<std::uint64_t>(low)};
+bool fits_128_bits(Int128 a, std::int64_t b) {
+  return width(static_cast<Uint128>(a)) + width(static_cast<Uint128>(b)) <= 128;
+}
+
+/// A product of an in-circle determinant and an orientation, both >= 0, least significant limb first.
+using Limbs = std::array<mp_limb_t, 3>;
+static_assert(sizeof(mp_limb_t) == sizeof(std::uint64_t));
+
+Limbs multiply(Int128 a, std::int64_t b) {
+  const auto wide = static_cast<Uint128>(a);
+  const std::array<mp_limb_t, 2> factor{static_cast<mp_limb_t>(wide), static_cast<mp_limb_t>(wide >> 64)};
+  Limbs product;
+  product[2] = mpn_mul_1(product.data(), factor.data(), 2, static_cast<mp_limb_t>(b));
+  return product;
 }
 
 using XY = std::pair<std::int64_t, std::int64_t>;
@@ -56,10 +71,17 @@ Int128 in_circle_determinant(const PowerMinors& minors, const Lifted& c) {
   return minors.x * c.x + minors.y * c.y + Int128{minors.z} * c.z;
 }
 
-int compare_exact(const Power& a, const Power& b) {
-  const Limbs left = multiply(static_cast<Uint128>(a.in_circle), static_cast<std::uint64_t>(b.orientation));
-  const Limbs right = multiply(static_cast<Uint128>(b.in_circle), static_cast<std::uint64_t>(a.orientation));
+std::optional<int> compare_in_128_bits(const Power& a, const Power& b) {
+  if (!fits_128_bits(a.in_circle, b.orientation) || !fits_128_bits(b.in_circle, a.orientation)) return std::nullopt;
+  const Uint128 left = static_cast<Uint128>(a.in_circle) * static_cast<Uint128>(b.orientation);
+  const Uint128 right = static_cast<Uint128>(b.in_circle) * static_cast<Uint128>(a.orientation);
   return (left > right) - (left < right);
+}
+
+int compare_by_gmp(const Power& a, const Power& b) {
+  const Limbs left = multiply(a.in_circle, b.orientation), right = multiply(b.in_circle, a.orientation);
+  const int sign = mpn_cmp(left.data(), right.data(), left.size());
+  return (sign > 0) - (sign < 0);
 }
 
 int compare_perturbed(const Corners& a, std::int64_t orientation_a, const Corners& b, std::int64_t orientation_b) {

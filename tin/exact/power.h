@@ -1,12 +1,17 @@
 // The power of a removed point with respect to the circle of an ear, and the order of two powers (Devillers 2002,
 // sections 2.4 and 3). The removed point is the origin of the lifted corners.
 //
-// A comparison goes through stages, each of which answers or passes on: floating point with an error bound; a product
-// of 192 bits, which holds any on the lattice, so that nothing wider is ever needed; the infinitesimals, for equal powers.
+// A comparison goes through stages, each of which answers or passes on: floating point with an error bound; products of
+// 128 bits, where they fit; GMP, for any; the infinitesimals, for equal powers.
+//
+// There is no static filter in front (a bound that is absolute and known when compiling). The cross products reach 2^187,
+// so their doubles may be wrong by 2^137, and a difference as large as that needs stars of some seven million lattice
+// steps, seven kilometres at the usual 1 mm. The semi-static bound costs one multiplication and answers at every scale.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "tin/exact/lifted.h"
 
@@ -43,10 +48,13 @@ inline int compare_filtered(double a, double b) {
   return (gap > doubt) - (gap < -doubt);
 }
 
-/// Stage 2: the sign of a - b.
-int compare_exact(const Power& a, const Power& b);
+/// Stage 2: the sign of a - b by products of 128 bits; nothing when these could overflow.
+std::optional<int> compare_in_128_bits(const Power& a, const Power& b);
 
-/// Stage 3: the sign of the difference of two *perturbed* powers that are equal without perturbation: the barycentric
+/// Stage 3: the sign of a - b by GMP.
+int compare_by_gmp(const Power& a, const Power& b);
+
+/// Stage 4: the sign of the difference of two *perturbed* powers that are equal without perturbation: the barycentric
 /// coefficients of the origin at the largest corner where they differ. 0 only for equal ears.
 int compare_perturbed(const Corners& a, std::int64_t orientation_a, const Corners& b, std::int64_t orientation_b);
 

@@ -12,7 +12,8 @@ struct Counters {
   std::uint64_t power_updates = 0;
   std::uint64_t comparisons = 0;         // of two powers
   std::uint64_t filter_failures = 0;     // comparisons that floating point left in doubt
-  std::uint64_t exact_evaluations = 0;   // of these, settled by 192-bit products
+  std::uint64_t exact_evaluations = 0;   // the same comparisons, by whole numbers
+  std::uint64_t gmp_evaluations = 0;     // of these, too large for 128 bits
   std::uint64_t power_ties = 0;          // and those that came down to the infinitesimals
 
   void in_circle_test() { ++in_circle_tests; }
@@ -21,6 +22,7 @@ struct Counters {
   void comparison() { ++comparisons; }
   void filter_failure() { ++filter_failures; }
   void exact_evaluation() { ++exact_evaluations; }
+  void gmp_evaluation() { ++gmp_evaluations; }
   void power_tie() { ++power_ties; }
 };
 
@@ -31,6 +33,7 @@ struct NoCounters {
   void comparison() {}
   void filter_failure() {}
   void exact_evaluation() {}
+  void gmp_evaluation() {}
   void power_tie() {}
 };
 

@@ -87,7 +87,12 @@ bool EarQueue::comes_before(const Star& star, const Entry& a, const Entry& b, Ta
   tally.filter_failure();
   const Candidate &l = candidates_[a.node], &r = candidates_[b.node];
   tally.exact_evaluation();
-  if (const int sign = exact::compare_exact(l.power, r.power); sign != 0) return sign < 0;
+  auto sign = exact::compare_in_128_bits(l.power, r.power);
+  if (!sign) {
+    tally.gmp_evaluation();
+    sign = exact::compare_by_gmp(l.power, r.power);
+  }
+  if (*sign != 0) return *sign < 0;
   tally.power_tie();
   const Corners left{star.at(l.previous), star.at(a.node), star.at(l.next)};
   const Corners right{star.at(r.previous), star.at(b.node), star.at(r.next)};

@@ -4,7 +4,8 @@
 
 namespace tin::terrain {
 
-IdMap::IdMap(const IdMap& other) : id_of_slot_(other.id_of_slot_), size_(other.size_) {
+IdMap::IdMap(const IdMap& other)
+    : low_of_slot_(other.low_of_slot_), high_of_slot_(other.high_of_slot_), size_(other.size_) {
   pages_.reserve(other.pages_.size());
   for (const auto& page : other.pages_) pages_.push_back(page ? std::make_unique<Page>(*page) : nullptr);
 }
@@ -30,8 +31,16 @@ void IdMap::bind(VertexId id, mesh::VertexSlot slot) {
   pages_[index]->slot[id.value() % kPage] = slot.value();
   ++pages_[index]->bound;
   ++size_;
-  if (slot.value() >= id_of_slot_.size()) id_of_slot_.resize(slot.value() + 1);
-  id_of_slot_[slot.value()] = id;
+  name(slot, id);
+}
+
+void IdMap::name(mesh::VertexSlot slot, VertexId id) {
+  if (slot.value() >= low_of_slot_.size()) low_of_slot_.resize(slot.value() + 1);
+  low_of_slot_[slot.value()] = static_cast<std::uint32_t>(id.value());
+  const auto high = static_cast<std::uint32_t>(id.value() >> 32);
+  if (high == 0 && high_of_slot_.empty()) return;
+  if (high_of_slot_.size() < low_of_slot_.size()) high_of_slot_.resize(low_of_slot_.size());
+  high_of_slot_[slot.value()] = high;
 }
 
 void IdMap::unbind(VertexId id) {
@@ -41,6 +50,20 @@ void IdMap::unbind(VertexId id) {
   slot = 0;
   --size_;
   if (--page->bound == 0) page.reset();
+}
+
+void IdMap::renumber(const mesh::Renumbering& moved) {
+  low_of_slot_ = std::vector<std::uint32_t>(size_ + 1);  // slots have no gaps now
+  high_of_slot_ = {};
+  for (std::uint64_t index = 0; index < pages_.size(); ++index) {
+    if (!pages_[index]) continue;
+    for (std::uint64_t i = 0; i < kPage; ++i) {
+      std::uint32_t& slot = pages_[index]->slot[i];
+      if (slot == 0) continue;
+      slot = moved.vertices[slot].value();
+      name(mesh::VertexSlot(slot), VertexId(index * kPage + i));
+    }
+  }
 }
 
 std::optional<VertexId> IdMap::first_from(VertexId from) const {

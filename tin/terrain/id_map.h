@@ -12,8 +12,8 @@
 
 namespace tin::terrain {
 
-/// Maps ids to slots through pages of 4,096 ids, dropped when empty: 12 bytes per vertex, O(1) either way, and
-/// iteration in the order of the ids. Copies are deep.
+/// Maps ids to slots through pages of 4,096 ids, dropped when empty: 8 bytes per vertex where ids are dense (12 once an id
+/// passes 2^32), O(1) either way, and iteration in the order of the ids. Copies are deep.
 class IdMap {
  public:
   IdMap() = default;
@@ -25,12 +25,18 @@ class IdMap {
   std::size_t size() const { return size_; }
   std::optional<mesh::VertexSlot> slot_of(VertexId id) const;
   /// Requires: a vertex with an id lives in `slot`.
-  VertexId id_of(mesh::VertexSlot slot) const { return id_of_slot_[slot.value()]; }
+  VertexId id_of(mesh::VertexSlot slot) const {
+    const std::uint64_t high = high_of_slot_.empty() ? 0 : high_of_slot_[slot.value()];
+    return VertexId(high << 32 | low_of_slot_[slot.value()]);
+  }
 
   /// Requires: `id` is not bound.
   void bind(VertexId id, mesh::VertexSlot slot);
   /// Requires: `id` is bound.
   void unbind(VertexId id);
+
+  /// Follows a renumbering of the slots. Requires: every slot with an id is still one.
+  void renumber(const mesh::Renumbering& moved);
 
   /// The smallest bound id >= `from`, for iteration in ascending order; nothing past the last.
   std::optional<VertexId> first_from(VertexId from) const;
@@ -42,7 +48,10 @@ class IdMap {
     std::uint32_t bound = 0;
   };
   std::vector<std::unique_ptr<Page>> pages_;
-  std::vector<VertexId> id_of_slot_;
+  void name(mesh::VertexSlot slot, VertexId id);
+
+  std::vector<std::uint32_t> low_of_slot_;   // the lower half of the id, by slot
+  std::vector<std::uint32_t> high_of_slot_;  // the upper half; empty as long as it is 0 everywhere
   std::size_t size_ = 0;
 };
 

@@ -52,7 +52,7 @@ Result<void> check_placement(const Placement& placement) {
 }  // namespace
 
 Result<Terrain> Terrain::build(frame::Frame frame, std::span<const Placement> placements,
-                               Duplicates duplicates, base::Progress* progress) {
+                               Duplicates duplicates, base::Progress* progress, unsigned threads) {
   std::vector<Point> points;
   points.reserve(placements.size());
   for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -63,7 +63,7 @@ Result<Terrain> Terrain::build(frame::Frame frame, std::span<const Placement> pl
   }
   Terrain terrain(std::move(frame));
   std::vector<VertexSlot> slots;
-  if (!terrain.triangulation_.insert_many(points, slots, progress))
+  if (!terrain.triangulation_.insert_many(points, slots, progress, threads))
     return error(Code::kCancelled, "Cancelled.");
   terrain.z_.resize(terrain.mesh().vertex_slots());
   std::vector<std::uint32_t> stacked(terrain.mesh().vertex_slots(), 0);
@@ -86,7 +86,8 @@ Result<Terrain> Terrain::build(frame::Frame frame, std::span<const Placement> pl
   return terrain;
 }
 
-Result<Terrain> Terrain::restore(frame::Frame frame, std::span<const Vertex> vertices, VertexId next_id) {
+Result<Terrain> Terrain::restore(frame::Frame frame, std::span<const Vertex> vertices, VertexId next_id,
+                                 unsigned threads) {
   Terrain terrain(std::move(frame));
   std::vector<Point> points;
   points.reserve(vertices.size());
@@ -97,7 +98,7 @@ Result<Terrain> Terrain::restore(frame::Frame frame, std::span<const Vertex> ver
     points.push_back(vertex.at);
   }
   std::vector<VertexSlot> slots;
-  terrain.triangulation_.insert_many(points, slots);
+  terrain.triangulation_.insert_many(points, slots, nullptr, threads);
   terrain.z_.resize(terrain.mesh().vertex_slots());
   if (terrain.mesh().vertex_count() != vertices.size())
     return error(Code::kMalformed, "Two stored vertices coincide.");
@@ -124,6 +125,7 @@ Result<Terrain::Applied> Terrain::apply(std::span<const Edit> edits, Duplicates 
     }
     applied.ids.push_back(*id);
   }
+  close_gaps();
   return applied;
 }
 
@@ -196,6 +198,7 @@ Result<void> Terrain::replay(const Change& change) {
     }
     return error(Code::kConflict, "The change does not fit the terrain's vertices.", place(i));
   }
+  close_gaps();
   return {};
 }
 
@@ -236,6 +239,21 @@ void Terrain::drop(VertexSlot slot, VertexId id) {
   triangulation_.remove(slot);
 }
 
+/// After many removals: gives the memory of their slots back, and stores along the curve what is left.
+void Terrain::close_gaps() {
+  constexpr std::size_t kWorthIt = 20'000;  // slots; fewer take less than two megabytes
+  const std::size_t slots = mesh().vertex_slots();
+  if (slots < kWorthIt || vertex_count() > slots / 2) return;
+  const mesh::Renumbering moved = triangulation_.compact();
+  std::vector<double> z(mesh().vertex_slots());
+  for (std::size_t slot = 0; slot < z_.size(); ++slot) {
+    const std::uint32_t to = moved.vertices[slot].value();
+    if (to != mesh::kNone) z[to] = z_[slot];
+  }
+  z_ = std::move(z);
+  ids_.renumber(moved);
+}
+
 std::optional<Vertex> Terrain::vertex(VertexId id) const {
   const auto slot = ids_.slot_of(id);
   if (!slot) return std::nullopt;
@@ -253,8 +271,8 @@ std::vector<Vertex> Terrain::vertices_by_id(std::span<const VertexId> without) c
   return vertices;
 }
 
-Terrain Terrain::without(std::span<const VertexId> ids) const {
-  auto rest = restore(frame_, vertices_by_id(ids), next_id_);
+Terrain Terrain::without(std::span<const VertexId> ids, unsigned threads) const {
+  auto rest = restore(frame_, vertices_by_id(ids), next_id_, threads);
   TIN_CHECK(rest.ok());
   rest->set_source_grid(source_grid_);
   return std::move(*rest);

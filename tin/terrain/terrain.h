@@ -53,15 +53,18 @@ class Terrain {
   /// first keeps its id). Requires: positions on the lattice.
   /// Errors: kNotFinite, kInvalidValue (elevation beyond kMaxElevation), kOutsideLattice, kDuplicatePosition
   /// (policy kReject), kCancelled; `where` is "/i".
+  /// Threads: uses up to `threads`; the terrain is the same for any number.
   static base::Result<Terrain> build(frame::Frame frame, std::span<const Placement> placements,
-                                     Duplicates duplicates, base::Progress* progress = nullptr);
+                                     Duplicates duplicates, base::Progress* progress = nullptr,
+                                     unsigned threads = 1);
   /// The same with given ids (a checkpoint's): ids must be distinct and positions too, else kMalformed.
   static base::Result<Terrain> restore(frame::Frame frame, std::span<const Vertex> vertices,
-                                       VertexId next_id);
+                                       VertexId next_id, unsigned threads = 1);
 
   /// Applies all edits or none, in order; a later edit may name a vertex that an earlier one inserted.
   /// Errors: kUnknownVertex, kDuplicatePosition, kNotFinite, kInvalidValue, kOutsideLattice; `where` is "/i"
-  /// (the edit's index). Ensures: on error the terrain is as it was. Cost: expected O(log n) per edit.
+  /// (the edit's index). Ensures: on error the terrain is as it was. Cost: expected O(log n) per edit; where
+  /// removals have left more gaps than vertices the arrays are made compact, O(n), less than the removals cost.
   base::Result<Applied> apply(std::span<const Edit> edits, Duplicates duplicates);
 
   /// Takes back the last apply() as if it had never been: ids that it gave are given again. Requires: nothing
@@ -90,7 +93,7 @@ class Terrain {
   std::vector<Vertex> vertices_by_id(std::span<const VertexId> without = {}) const;
   /// What is left when the vertices of these ids (ascending) are removed, built anew: the same terrain as by
   /// removing them one by one, sooner when they are many.
-  Terrain without(std::span<const VertexId> ids) const;
+  Terrain without(std::span<const VertexId> ids, unsigned threads = 1) const;
 
   std::string digest() const { return hash_.digest(frame_); }
   /// O(n) each; empty terrain: nothing.
@@ -109,6 +112,7 @@ class Terrain {
   bool take(const Step& step);  // performs one step if it fits
   void put(mesh::VertexSlot slot, VertexId id, const Placement& placement);
   void drop(mesh::VertexSlot slot, VertexId id);
+  void close_gaps();
 
   frame::Frame frame_;
   delaunay::Triangulation triangulation_;

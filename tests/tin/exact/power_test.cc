@@ -12,7 +12,8 @@ namespace {
 
 using exact_tests::hard_points;
 using exact_tests::to_mpz;
-using tin::exact::compare_exact;
+using tin::exact::compare_by_gmp;
+using tin::exact::compare_in_128_bits;
 using tin::exact::compare_filtered;
 using tin::exact::compare_perturbed;
 using tin::exact::Corners;
@@ -68,7 +69,7 @@ int gmp_perturbed_sign(const Corners& a, const Corners& b) {
 }
 
 TEST_F(PowerTest, EachStageAgreesWithGmpOrPassesOn) {
-  int filtered = 0, exact = 0, ties = 0;
+  int filtered = 0, narrow = 0, wide = 0, ties = 0;
   for (int i = 0; i < 400000; ++i) {
     if (!draw()) continue;
     const Power l = power(left_), r = power(right_);
@@ -77,8 +78,13 @@ TEST_F(PowerTest, EachStageAgreesWithGmpOrPassesOn) {
       ++filtered;
       ASSERT_EQ(sign, expected);
     }
-    ASSERT_EQ(compare_exact(l, r), expected);
-    exact += expected != 0;
+    if (const auto sign = compare_in_128_bits(l, r)) {
+      ++narrow;
+      ASSERT_EQ(*sign, expected);
+    } else {
+      ++wide;
+    }
+    ASSERT_EQ(compare_by_gmp(l, r), expected);
     if (expected != 0) continue;
     ++ties;
     const int perturbed = compare_perturbed(left_, l.orientation, right_, r.orientation);
@@ -86,23 +92,71 @@ TEST_F(PowerTest, EachStageAgreesWithGmpOrPassesOn) {
     ASSERT_EQ(perturbed, -compare_perturbed(right_, r.orientation, left_, l.orientation));
   }
   EXPECT_GT(filtered, 1000);
-  EXPECT_GT(exact, filtered);
+  EXPECT_GT(narrow, 1000);
+  EXPECT_GT(wide, 1000) << "no product needed GMP";
   EXPECT_GT(ties, 10) << "the points met no ties";
 }
 
 TEST_F(PowerTest, FilterPassesOnPowersThatDifferInTheLastBit) {
   const Power a = make_power((tin::exact::Int128{1} << 100) + 1, 3), b = make_power(tin::exact::Int128{1} << 100, 3);
   EXPECT_EQ(compare_filtered(a.approximate, b.approximate), 0);
-  EXPECT_EQ(compare_exact(a, b), 1);
-  EXPECT_EQ(compare_exact(b, a), -1);
+  EXPECT_EQ(compare_in_128_bits(a, b), 1);
+  EXPECT_EQ(compare_in_128_bits(b, a), -1);
+  EXPECT_EQ(compare_by_gmp(a, b), 1);
+  EXPECT_EQ(compare_by_gmp(b, a), -1);
 }
 
-TEST_F(PowerTest, ProductsOf185BitsAreComparedExactly) {
+TEST_F(PowerTest, ProductsOf185BitsAreComparedByGmp) {
   const tin::exact::Int128 big = (tin::exact::Int128{1} << 124) - 1;
   const std::int64_t wide = (std::int64_t{1} << 61) - 1;
-  EXPECT_EQ(compare_exact(make_power(big, wide), make_power(big - 1, wide)), 1);
-  EXPECT_EQ(compare_exact(make_power(big, wide), make_power(big, wide - 1)), -1);
-  EXPECT_EQ(compare_exact(make_power(big, wide), make_power(big, wide)), 0);
+  EXPECT_EQ(compare_in_128_bits(make_power(big, wide), make_power(big - 1, wide)), std::nullopt);
+  EXPECT_EQ(compare_by_gmp(make_power(big, wide), make_power(big - 1, wide)), 1);
+  EXPECT_EQ(compare_by_gmp(make_power(big, wide), make_power(big, wide - 1)), -1);
+  EXPECT_EQ(compare_by_gmp(make_power(big, wide), make_power(big, wide)), 0);
+}
+
+TEST_F(PowerTest, The128BitStageAnswersUpToItsLimitAndPassesOnOnePast) {
+  using tin::exact::Int128;
+  const Int128 wide = (Int128{1} << 66) - 1;  // 66 bits
+  const std::int64_t narrow = (std::int64_t{1} << 61) - 1, at_limit = (std::int64_t{1} << 62) - 1;
+  EXPECT_EQ(compare_in_128_bits(make_power(wide, narrow), make_power(wide, at_limit)), 1);
+  EXPECT_EQ(compare_in_128_bits(make_power(wide + 1, narrow), make_power(wide, at_limit)), std::nullopt);
+  EXPECT_EQ(compare_in_128_bits(make_power(wide, at_limit), make_power(wide + 1, narrow)), std::nullopt);
+  EXPECT_EQ(compare_by_gmp(make_power(wide + 1, narrow), make_power(wide, at_limit)), 1);
+}
+
+/// The stages, each with the sign it gives, 0 where it passes on.
+TEST_F(PowerTest, EachStageIsAntisymmetricAndTransitiveOnNearlyEqualPowers) {
+  const std::array stages{
+      std::function([](const Power& a, const Power& b) { return compare_filtered(a.approximate, b.approximate); }),
+      std::function([](const Power& a, const Power& b) { return compare_in_128_bits(a, b).value_or(0); }),
+      std::function([](const Power& a, const Power& b) { return compare_by_gmp(a, b); })};
+  std::array<int, 3> answers{};
+  std::uniform_int_distribution<int> shift(0, 60), nudge(-2, 2);
+  for (int i = 0; i < 100000; ++i) {
+    const int in_circle_shift = shift(random_), orientation_shift = shift(random_) / 2;
+    const auto near = [&] {
+      const tin::exact::Int128 in_circle = (tin::exact::Int128{3} << (in_circle_shift + 2)) + nudge(random_);
+      return make_power(in_circle, (std::int64_t{5} << (orientation_shift + 2)) + nudge(random_));
+    };
+    const Power a = near(), b = near(), c = near();
+    for (std::size_t s = 0; s < stages.size(); ++s) {
+      const auto& sign = stages[s];
+      ASSERT_EQ(sign(a, b), -sign(b, a)) << "stage " << s;
+      ASSERT_EQ(sign(a, a), 0) << "stage " << s;
+      answers[s] += sign(a, b) != 0;
+      if (sign(a, b) < 0 && sign(b, c) < 0) {
+        ASSERT_NE(sign(a, c), 1) << "stage " << s;
+      }
+    }
+    // Where an earlier stage answers, a later one says the same.
+    for (const std::size_t earlier : {0U, 1U}) {
+      if (const int sign = stages[earlier](a, b); sign != 0) {
+        ASSERT_EQ(sign, compare_by_gmp(a, b));
+      }
+    }
+  }
+  for (const int count : answers) EXPECT_GT(count, 1000);
 }
 
 TEST_F(PowerTest, MinorsGiveTheSameDeterminantForEveryThirdCorner) {
@@ -116,7 +170,7 @@ TEST_F(PowerTest, MinorsGiveTheSameDeterminantForEveryThirdCorner) {
 TEST_F(PowerTest, TheOrderIsTransitive) {
   const auto compare = [](const Corners& a, const Corners& b) {
     const Power l = power(a), r = power(b);
-    const int sign = compare_exact(l, r);
+    const int sign = compare_by_gmp(l, r);
     return sign != 0 ? sign : compare_perturbed(a, l.orientation, b, r.orientation);
   };
   std::uniform_int_distribution<std::int32_t> small(-2, 2);

@@ -254,6 +254,52 @@ TEST(TerrainTest, RandomHistoriesUndoneStepByStepPassTheSameDigests) {
   EXPECT_EQ(broken(t), "");
 }
 
+/// Placements on a grid of side x side, with an elevation of its own for each.
+std::vector<Placement> plateau(std::int32_t side) {
+  std::vector<Placement> placements;
+  for (const Point p : support::grid_points(side, side, 3)) placements.push_back({p, p.x + 0.001 * p.y});
+  return placements;
+}
+
+TEST(TerrainTest, MassDeletionGivesItsMemoryBackAndKeepsIdsAndElevations) {
+  Terrain t = *Terrain::build({}, plateau(160), Duplicates::kReject);
+  const std::string before = t.digest();
+  std::vector<Edit> edits;
+  for (std::uint64_t id = 1; id <= t.vertex_count(); ++id) {
+    if (id % 5 != 0) edits.push_back(Remove{VertexId(id)});
+  }
+  auto expected = contents(t);
+  std::erase_if(expected, [](const auto& vertex) { return vertex.first % 5 != 0; });
+  const auto applied = t.apply(edits, Duplicates::kReject);
+  ASSERT_TRUE(applied.ok());
+  EXPECT_EQ(t.mesh().vertex_slots(), t.vertex_count() + 1) << "gaps were left";
+  EXPECT_EQ(contents(t), expected);
+  EXPECT_EQ(broken(t), "");
+  const auto more = t.apply(std::vector<Edit>{Insert{{1, 1}, 5}, SetZ{VertexId(10), 77}}, Duplicates::kReject);
+  ASSERT_TRUE(more.ok());
+  EXPECT_EQ(t.vertex(VertexId(10))->z, 77);
+  t.undo(*more);
+  EXPECT_EQ(contents(t), expected);
+  t.undo(*applied);
+  EXPECT_EQ(t.digest(), before);
+  EXPECT_EQ(broken(t), "");
+}
+
+TEST(TerrainTest, AnyNumberOfThreadsBuildsTheSameTerrain) {
+  const auto placements = plateau(120);
+  const Terrain one = *Terrain::build({}, placements, Duplicates::kReject);
+  for (const unsigned threads : {2U, 3U}) {
+    const Terrain many = *Terrain::build({}, placements, Duplicates::kReject, nullptr, threads);
+    EXPECT_EQ(many.digest(), one.digest());
+    EXPECT_EQ(contents(many), contents(one));
+    const Terrain again = *Terrain::restore({}, one.vertices_by_id(), one.next_id(), threads);
+    EXPECT_EQ(contents(again), contents(one));
+    EXPECT_EQ(support::triangles(many.mesh()), support::triangles(one.mesh()));
+    EXPECT_EQ(broken(many), "");
+    EXPECT_EQ(broken(again), "");
+  }
+}
+
 TEST(SourceGridTest, CellsReachHalfAStepAroundTheirCentres) {
   tin::terrain::SourceGrid grid;
   grid.width = 3;
