@@ -215,7 +215,9 @@ Result<Remark> read_remark(const Object& object) {
     if (!member) continue;
     auto given = member->string(most);
     if (!given) return std::move(given).error();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t'; };
+    const auto is_control = [](char c) {
+      return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t';
+    };
     if (std::any_of(given->begin(), given->end(), is_control))
       return member->error(Code::kInvalidValue, "there must be no control characters here");
     *text = *given;

@@ -135,7 +135,7 @@ Problem to_problem(const tin::base::Error& error) {
     return make_problem(row, "Nothing was changed. The server's log says why; try again later.", {});
   }
   if (error.code == Code::kNoSpace) {
-    return make_problem(row, "Nothing was changed: the disk has no room for it. Try again when there is some.", {});
+    return make_problem(row, "Nothing was changed: the disk has no room. Try again when there is some.", {});
   }
   return make_problem(row, error.message, error.where);
 }

@@ -14,7 +14,11 @@ constexpr std::size_t kAtOnce = 100;  // revisions
 
 ChangeStream::ChangeStream(app::Catalogue& catalogue, std::shared_ptr<app::Tin> tin, std::uint64_t since,
                            Slots& listeners)
-    : catalogue_(catalogue), tin_(std::move(tin)), sent_(since), listeners_(listeners), last_sign_(Clock::now()) {}
+    : catalogue_(catalogue),
+      tin_(std::move(tin)),
+      sent_(since),
+      listeners_(listeners),
+      last_sign_(Clock::now()) {}
 
 ChangeStream::~ChangeStream() {
   listeners_.release();

@@ -38,7 +38,7 @@ Result<Response> edit(Context& context, const Request& request) {
   if (!tin) return tin.error();
   if (auto json = require_json(request); !json) return json.error();
   const Slot slot(context.edits);
-  if (!slot.taken()) return error(Code::kTooMany, "So many edits wait already that this one could not be taken.");
+  if (!slot.taken()) return error(Code::kTooMany, "Too many edits wait already.");
   const auto expected = expected_revisions(**tin, request.header("if-match"));
   if (!expected) return expected.error();
   const auto message = proto::read_edit_request(

@@ -38,13 +38,15 @@ tin::frame::Frame frame_of(const app::Tin& tin) {
 
 Result<std::uint64_t> limit_of(const Request& request) {
   const auto text = request.query_value("limit");
-  return text ? proto::parse_count(*text, 1, kMostListed, "query:limit") : Result<std::uint64_t>(kDefaultListed);
+  return text ? proto::parse_count(*text, 1, kMostListed, "query:limit")
+              : Result<std::uint64_t>(kDefaultListed);
 }
 
 std::vector<proto::RevisionDocument> documents(const app::RevisionPage& page, const app::Tin& tin) {
   const auto frame = frame_of(tin);
   std::vector<proto::RevisionDocument> out;
-  for (const app::RevisionSummary& revision : page.revisions) out.push_back(revision_document(revision, frame));
+  for (const app::RevisionSummary& revision : page.revisions)
+    out.push_back(revision_document(revision, frame));
   return out;
 }
 
@@ -65,9 +67,9 @@ Result<Response> list(Context& context, const Request& request) {
     if (!parsed) return error(Code::kMalformed, "This is no token that a page gave.", "query:next");
     last = *parsed;
   }
-  const auto page =
-      app::read_revisions(context.catalogue.store(), (*tin)->id(),
-                          {.last = last, .newest_first = true, .most_rows = static_cast<std::size_t>(*limit)});
+  const auto page = app::read_revisions(
+      context.catalogue.store(), (*tin)->id(),
+      {.last = last, .newest_first = true, .most_rows = static_cast<std::size_t>(*limit)});
   if (!page) return page.error();
   proto::RevisionList answer{documents(*page, **tin), page->present, std::nullopt, {}};
   if (page->oldest > 0) answer.oldest = page->oldest;
@@ -135,8 +137,9 @@ Result<Response> changes(Context& context, const Request& request) {
   proto::ChangeList answer{*since, after, documents(*page, **tin), {}};
   answer.links.push_back({request.path + "?since=" + std::to_string(*since), "self", std::string(kJson), ""});
   if (after < page->present) {
-    answer.links.push_back({request.path + "?since=" + std::to_string(after) + "&limit=" + std::to_string(*limit),
-                            "next", std::string(kJson), ""});
+    answer.links.push_back(
+        {request.path + "?since=" + std::to_string(after) + "&limit=" + std::to_string(*limit), "next",
+         std::string(kJson), ""});
   }
   return tagged(proto::change_list_json(answer), **tin, page->present, request);
 }
@@ -154,7 +157,7 @@ Result<Response> revert(Context& context, const Request& request) {
   if (!remark) return remark.error();
   if (remark->note.empty()) remark->note = "undo of revision " + std::to_string(*revision);
   const Slot slot(context.edits);
-  if (!slot.taken()) return error(Code::kTooMany, "So many edits wait already that this one could not be taken.");
+  if (!slot.taken()) return error(Code::kTooMany, "Too many edits wait already.");
   const auto expected = expected_revisions(**tin, request.header("if-match"));
   if (!expected) return expected.error();
   const auto key = request_key(request);
@@ -162,7 +165,8 @@ Result<Response> revert(Context& context, const Request& request) {
   const auto reverted =
       (*tin)->revert(*revision, {*expected, {app::now_ms(), remark->author, remark->note}, *key});
   if (!reverted) return reverted.error();
-  return tagged(proto::edit_result_json(reverted->revision, reverted->ids), **tin, reverted->revision, request);
+  return tagged(proto::edit_result_json(reverted->revision, reverted->ids), **tin, reverted->revision,
+                request);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "server/app/catalogue.h"
 
 #include <chrono>
+#include <new>
 #include <random>
 
 #include "server/obs/log.h"
@@ -49,23 +50,30 @@ Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store>
   return catalogue;
 }
 
-/// Now and then frees the versions that no page will ask for any more, brings checkpoints forward, and forgets
-/// what is older than has to be kept.
+/// Now and then frees the versions that no page will ask for any more, brings checkpoints forward, and
+/// forgets what is older than has to be kept.
 void Catalogue::sweep(const std::stop_token& stop) {
   std::mutex unused;
   auto answers_due = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
-    for (const auto& tin : list()) {
-      tin->drop_expired();
-      if (tin->steps_since_checkpoint() >= static_cast<std::uint64_t>(history_.checkpoint_steps)) keep_up(*tin);
-      if (stop.stop_requested()) return;
-    }
-    if (std::chrono::steady_clock::now() >= answers_due) {
-      answers_due = std::chrono::steady_clock::now() + kForgetEvery;
-      forget_answers();
+    try {
+      sweep_once(stop);
+      if (std::chrono::steady_clock::now() >= answers_due) {
+        answers_due = std::chrono::steady_clock::now() + kForgetEvery;
+        forget_answers();
+      }
+    } catch (const std::bad_alloc&) {  // there may be memory the next time
     }
     std::unique_lock lock(unused);
     stopping_.wait_for(lock, stop, kSweepEvery, [] { return false; });
+  }
+}
+
+void Catalogue::sweep_once(const std::stop_token& stop) {
+  for (const auto& tin : list()) {
+    tin->drop_expired();
+    if (tin->steps_since_checkpoint() >= static_cast<std::uint64_t>(history_.checkpoint_steps)) keep_up(*tin);
+    if (stop.stop_requested()) return;
   }
 }
 

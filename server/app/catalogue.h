@@ -56,6 +56,7 @@ class Catalogue {
       : store_(std::move(store)), limits_(limits), history_(history) {}
   tin::base::Result<void> load(const store::TinRecord& record);
   void sweep(const std::stop_token& stop);
+  void sweep_once(const std::stop_token& stop);
   void keep_up(Tin& tin);
   void forget_answers();
   tin::base::Result<void> check_room_locked(const std::optional<std::string>& id) const;

@@ -17,8 +17,8 @@ struct RevisionSummary {
   tin::terrain::Box bounds;                              // of these, before and after
 };
 
-/// Vertices count by what became of them: one that came and went within the revision does not. Errors: kMalformed,
-/// kUnsupported.
+/// Vertices count by what became of them: one that came and went within the revision does not. Errors:
+/// kMalformed, kUnsupported.
 tin::base::Result<RevisionSummary> summarise(const store::JournalRow& row);
 
 struct RevisionPage {
@@ -27,7 +27,8 @@ struct RevisionPage {
   std::uint64_t oldest = 0;   // that is kept; 0: none is
 };
 
-/// Part of a TIN's journal; ends early where records are large. Errors: as Store::read_journal and summarise().
+/// Part of a TIN's journal; ends early where records are large. Errors: as Store::read_journal and
+/// summarise().
 tin::base::Result<RevisionPage> read_revisions(store::Store& store, std::string_view tin,
                                                store::JournalRange range);
 

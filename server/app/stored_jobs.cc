@@ -49,8 +49,17 @@ Code code_named(std::string_view name) {
 }
 
 store::JobRow row_of(const jobs::JobStatus& job) {
-  store::JobRow row{job.id, job.kind, job.description, static_cast<std::int64_t>(job.state), job.created_ms,
-                    job.started_ms.value_or(0), job.finished_ms.value_or(0), job.message, "", "", job.result};
+  store::JobRow row{job.id,
+                    job.kind,
+                    job.description,
+                    static_cast<std::int64_t>(job.state),
+                    job.created_ms,
+                    job.started_ms.value_or(0),
+                    job.finished_ms.value_or(0),
+                    job.message,
+                    "",
+                    "",
+                    job.result};
   if (job.error) {
     row.error = name_of(job.error->code);
     row.message = job.error->message;

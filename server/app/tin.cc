@@ -74,7 +74,8 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, const Terms& terms) {
     require_terrain();
     return std::pair(terrain_->frame(), open_resolution_.has_value());
   }();
-  std::vector<Edit> lattice_edits;  // made here, where nobody waits; while the frame is open only when it is our turn
+  std::vector<Edit>
+      lattice_edits;  // made here, where nobody waits; while the frame is open only when it is our turn
   if (open && inserts_any(edits)) {
     write.alone = true;
     write.first_vertices = edits;

@@ -4,8 +4,9 @@
 // version(): an immutable terrain that costs nothing as long as nobody edits. The first edit while a version
 // is out copies the terrain, at memory speed and beside the readers, and goes on with the copy.
 //
-// Writes queue; whoever is first carries out what waits as one batch: applies it, takes it back, commits it, and
-// performs it again for readers to see. So nobody ever sees what may be lost, and readers wait for no disk.
+// Writes queue; whoever is first carries out what waits as one batch: applies it, takes it back, commits it,
+// and performs it again for readers to see. So nobody ever sees what may be lost, and readers wait for no
+// disk.
 #pragma once
 
 #include <array>
@@ -94,8 +95,8 @@ class Tin {
 
   /// Applies all edits or none; durable when it returns. Under a key that was used before: what was answered
   /// then. Errors: kPrecondition; kInvalidValue (the key came with another request before); as
-  /// frame::to_lattice and Terrain::apply, at "/i"; kTooLarge (vertices per TIN); kTooMany (no memory); kNotFound
-  /// (retired); kStorage; kNoSpace.
+  /// frame::to_lattice and Terrain::apply, at "/i"; kTooLarge (vertices per TIN); kTooMany (no memory);
+  /// kNotFound (retired); kStorage; kNoSpace.
   tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, const Terms& terms);
 
   /// Undoes one revision, as a revision. Errors: kNotFound (no such revision), kGone (it is no longer kept),
@@ -118,8 +119,9 @@ class Tin {
 
   /// Steps in the journal that a start would have to replay.
   std::uint64_t steps_since_checkpoint() const { return steps_since_checkpoint_.load(); }
-  /// Brings the checkpoint up to the present revision, out of the last one and the journal: the terrain is not
-  /// asked, so that nobody waits. Not by two threads at once. Errors: kNotFound (retired), kStorage, kNoSpace.
+  /// Brings the checkpoint up to the present revision, out of the last one and the journal: the terrain is
+  /// not asked, so that nobody waits. Not by two threads at once. Errors: kNotFound (retired), kStorage,
+  /// kNoSpace.
   tin::base::Result<void> write_checkpoint();
 
   /// What the store has of a TIN. Errors: kNotFound, kStorage, kMalformed, kUnsupported, kConflict.

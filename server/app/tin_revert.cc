@@ -47,8 +47,8 @@ Result<Terrain::Applied> replay(Terrain& terrain, const Change& change) {
   return applied;
 }
 
-/// What `change` makes of the terrain, built anew. Errors: kConflict at "/i", or without a place when a position
-/// is taken.
+/// What `change` makes of the terrain, built anew. Errors: kConflict at "/i", or without a place when a
+/// position is taken.
 Result<std::shared_ptr<Terrain>> replayed(const Terrain& terrain, const Change& change) {
   VertexSet set(terrain.vertices_by_id(), terrain.next_id());
   if (auto done = set.replay(change); !done) return done.error();
@@ -136,7 +136,8 @@ tin::base::Error Tin::explain_conflict(std::uint64_t revision, const Change& inv
     }
     first = rows->back().revision + 1;
   }
-  if (inverse.steps[index].before) return error(Code::kConflict, why + name_of(vertex) + " has been changed since.");
+  if (inverse.steps[index].before)
+    return error(Code::kConflict, why + name_of(vertex) + " has been changed since.");
   why += "another vertex stands where " + name_of(vertex) + " would return to.";
   return error(Code::kConflict, why);
 }

@@ -23,6 +23,21 @@ tin::base::Error out_of_memory() {
   return error(Code::kTooMany, "There is not enough memory for this now; nothing was changed.");
 }
 
+void log_failure(const std::string& id, const std::exception& failure) noexcept {
+  try {
+    obs::log_error("write_failed", {{"tin", id}, {"message", failure.what()}});
+  } catch (const std::bad_alloc&) {
+  }
+}
+
+void give_up(Write& write) noexcept {
+  try {
+    write.outcome = out_of_memory();
+  } catch (const std::bad_alloc&) {
+    write.outcome = tin::base::Error{Code::kTooMany, {}, {}};
+  }
+}
+
 Result<void> check_expected(std::span<const std::uint64_t> expected, std::uint64_t present) {
   if (expected.empty() || std::find(expected.begin(), expected.end(), present) != expected.end()) return {};
   return error(Code::kPrecondition, "The TIN is at revision " + std::to_string(present) + " by now.");
@@ -72,10 +87,10 @@ void Tin::carry_out(std::span<Write* const> writes) {
       carry_out_together(open);
     }
   } catch (const std::exception& exception) {
-    obs::log_error("write_failed", {{"tin", id()}, {"message", exception.what()}});
+    log_failure(id(), exception);
   }
   for (Write* write : writes) {
-    if (!write->outcome) write->outcome = out_of_memory();
+    if (!write->outcome) give_up(*write);
   }
 }
 
@@ -171,8 +186,8 @@ void Tin::apply_one(Write& write, Batch& batch) {
   }
   if (!applied->change.steps.empty() && terrain_->vertex_count() > max_vertices_) {
     terrain_->undo(*applied);
-    write.outcome = error(Code::kTooLarge,
-                          "A TIN may have at most " + std::to_string(max_vertices_) + " vertices.");
+    write.outcome =
+        error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices.");
     return;
   }
   if (!applied->change.steps.empty()) ++batch.revision;
@@ -181,7 +196,8 @@ void Tin::apply_one(Write& write, Batch& batch) {
   batch.applied.push_back({&write, std::move(*applied), std::move(edited)});
 }
 
-/// The outcome of all that was applied; readers see it from now on. With mutex_ held, unless nothing is durable.
+/// The outcome of all that was applied; readers see it from now on. With mutex_ held, unless nothing is
+/// durable.
 void Tin::publish(Batch& batch, const Result<void>& durable) {
   if (durable) {
     revision_ = batch.revision;
@@ -189,15 +205,18 @@ void Tin::publish(Batch& batch, const Result<void>& durable) {
   }
   for (const Batch::Repeated& repeated : batch.repeated) {
     const Edited& edited = batch.applied[repeated.of].edited;
-    repeated.write->outcome = durable ? Result<Edited>(edited) : Result<Edited>(durable.error());
+    try {
+      repeated.write->outcome = durable ? Result<Edited>(edited) : Result<Edited>(durable.error());
+    } catch (const std::bad_alloc&) {  // the answer is in the store, for when it asks again
+    }
   }
   for (Batch::Applied& one : batch.applied) {
     one.write->outcome = durable ? Result<Edited>(std::move(one.edited)) : Result<Edited>(durable.error());
   }
 }
 
-/// The first vertices of an open frame go into an empty terrain beside the present one: a refused edit leaves the
-/// frame open.
+/// The first vertices of an open frame go into an empty terrain beside the present one: a refused edit leaves
+/// the frame open.
 void Tin::fit_and_apply(Write& write) {
   if (auto expected = check_expected(write.terms.expected, revision_); !expected) {
     write.outcome = expected.error();
@@ -222,8 +241,8 @@ void Tin::fit_and_apply(Write& write) {
   auto applied = (*fitted)->apply(*edits, duplicates_);
   if (!applied) return refuse(applied.error());
   if ((*fitted)->vertex_count() > max_vertices_) {
-    return refuse(error(Code::kTooLarge,
-                        "A TIN may have at most " + std::to_string(max_vertices_) + " vertices."));
+    return refuse(
+        error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices."));
   }
   if (applied->change.steps.empty()) {
     write.outcome = Edited{revision_, std::move(applied->ids)};
@@ -232,9 +251,11 @@ void Tin::fit_and_apply(Write& write) {
   Edited edited{revision_ + 1, std::move(applied->ids)};
   store::Entry entry = entry_of(write, applied->change, edited);
   entry.checkpoint = empty;
+  auto versions_out = std::make_shared<std::atomic<int>>(0);  // before the commit: nothing may fail after it
   if (auto durable = commit({&entry, 1}); !durable) return refuse(durable.error());
   const Lock lock(mutex_);
-  replace_terrain(std::move(*fitted));
+  terrain_ = std::move(*fitted);
+  versions_out_ = std::move(versions_out);
   open_resolution_.reset();
   revision_ = edited.revision;
   steps_since_checkpoint_ += applied->change.steps.size();
@@ -254,12 +275,14 @@ void Tin::take_over(Write& write) {
   }
   Edited edited{revision_ + 1, {}};
   const store::Entry entry = entry_of(write, write.change, edited);
+  auto versions_out = std::make_shared<std::atomic<int>>(0);  // before the commit: nothing may fail after it
   if (auto durable = commit({&entry, 1}); !durable) {
     write.outcome = durable.error();
     return;
   }
   const Lock lock(mutex_);
-  replace_terrain(std::move(write.prepared));
+  terrain_ = std::move(write.prepared);
+  versions_out_ = std::move(versions_out);
   revision_ = edited.revision;
   steps_since_checkpoint_ += write.change.steps.size();
   write.outcome = std::move(edited);
@@ -288,8 +311,8 @@ Result<void> Tin::commit(std::span<const store::Entry> entries) {
   }
 }
 
-/// The terrain for the writer alone, and no version's. Only the writer changes it, so readers go on while it is
-/// copied for those who keep a version.
+/// The terrain for the writer alone, and no version's. Only the writer changes it, so readers go on while it
+/// is copied for those who keep a version.
 Tin::Lock Tin::exclusive() {
   Lock lock(mutex_);
   if (versions_out_->load(std::memory_order_acquire) == 0) return lock;

@@ -37,7 +37,8 @@ bool inserts_any(std::span<const WorldEdit> edits);
 tin::base::Result<std::vector<tin::terrain::Edit>> to_lattice(std::span<const WorldEdit> edits,
                                                               const tin::frame::Frame& frame);
 
-/// The first vertices arrive: an empty terrain in a frame like `open`, but fitted to them. Errors: kNotFinite at
+/// The first vertices arrive: an empty terrain in a frame like `open`, but fitted to them. Errors: kNotFinite
+/// at
 /// "/i"; as gdal::read_crs and frame::fit_points.
 tin::base::Result<std::shared_ptr<tin::terrain::Terrain>> fit_frame(const tin::frame::Frame& open,
                                                                     const std::array<double, 2>& resolution,

@@ -21,7 +21,8 @@ bool take(std::string_view& text, char end, std::uint64_t& number) {
 
 }  // namespace
 
-/// "revision;first+count,first+count," with runs of ids that ascend by one: a batch of new vertices is one run.
+/// "revision;first+count,first+count," with runs of ids that ascend by one: a batch of new vertices is one
+/// run.
 std::string encode_edited(const Edited& edited) {
   std::string out = std::to_string(edited.revision) + ";";
   for (std::size_t i = 0; i < edited.ids.size();) {

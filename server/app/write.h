@@ -31,7 +31,8 @@ struct RequestKey {
 
 /// What an edit is bound to, and what is remembered with it.
 struct Terms {
-  std::span<const std::uint64_t> expected = {};  // the present revision must be one of these, if any are given
+  std::span<const std::uint64_t> expected =
+      {};  // the present revision must be one of these, if any are given
   store::RevisionInfo info = {};
   std::optional<RequestKey> key = std::nullopt;
 };

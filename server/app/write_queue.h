@@ -1,5 +1,5 @@
-// Whoever comes first carries out what waits: the writes of many clients become one batch, and one commit of the
-// store, without a thread of their own.
+// Whoever comes first carries out what waits: the writes of many clients become one batch, and one commit of
+// the store, without a thread of their own.
 //
 //   WriteQueue<Write> queue([this](std::span<Write* const> batch) { carry_out(batch); });
 //   queue.submit(write);  // returns when the write was carried out, by this thread or another one
@@ -16,8 +16,8 @@
 
 namespace server::app {
 
-/// Thread-safe. Batches are carried out one at a time, in the order of their coming. Item has `weight` (its cost)
-/// and `alone` (it shares no batch).
+/// Thread-safe. Batches are carried out one at a time, in the order of their coming. Item has `weight` (its
+/// cost) and `alone` (it shares no batch).
 template <class Item>
 class WriteQueue {
  public:

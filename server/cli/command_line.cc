@@ -22,7 +22,8 @@ int run(int argc, char** argv) {
   serving->add_option("--config", arguments.config,
                       "Configuration file (JSON); see deploy/config.example.json");
   std::string folder, file;
-  auto* checking = app.add_subcommand("check", "Verify a data folder: checksums, digests, Delaunay (0 sound, 1 damaged)");
+  auto* checking =
+      app.add_subcommand("check", "Verify a data folder: checksums, digests, Delaunay (0 sound, 1 damaged)");
   checking->add_option("folder", folder, "The data folder; a server may run on it")->required();
   auto* backing_up = app.add_subcommand("backup", "Write a data folder to one file; a server may run on it");
   backing_up->add_option("folder", folder, "The data folder")->required();

@@ -83,7 +83,8 @@ void JobQueue::recall(const std::vector<JobStatus>& earlier) {
       if (is_finished(status.state)) {
         finished_.push_back(job);
       } else {
-        finish(*job, JobState::kDismissed, "dismissed because the server was restarted before it had finished");
+        finish(*job, JobState::kDismissed,
+               "dismissed because the server was restarted before it had finished");
       }
     }
   }
@@ -220,8 +221,7 @@ JobQueue::JobPtr JobQueue::next_job() {
 void JobQueue::run(Job& job) {
   Result<std::string> result = guarded(job.work, job.progress);
   job.work = nullptr;  // what it holds (a snapshot, perhaps) goes before anyone hears of the end
-  const bool cancelled =
-      !result.ok() && result.error().code == Code::kCancelled && job.progress.cancelled();
+  const bool cancelled = !result.ok() && result.error().code == Code::kCancelled && job.progress.cancelled();
   if (memory_ != nullptr && result.ok()) {
     // On disk before anyone hears of it. If that fails, this process knows it still.
     JobStatus done = status(job.status.id).value_or(job.status);

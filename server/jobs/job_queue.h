@@ -68,8 +68,8 @@ class JobQueue {
   /// soon after that says cancelled(). May throw; bad_alloc becomes kTooLarge, all else kInternal.
   using Work = std::function<tin::base::Result<std::string>(tin::base::Progress&)>;
 
-  /// `memory`, if there is one, outlives the queue. `earlier` are the jobs of an earlier process, in the order in
-  /// which they were submitted: those that had not finished are dismissed now.
+  /// `memory`, if there is one, outlives the queue. `earlier` are the jobs of an earlier process, in the
+  /// order in which they were submitted: those that had not finished are dismissed now.
   explicit JobQueue(const JobLimits& limits, JobMemory* memory = nullptr,
                     const std::vector<JobStatus>& earlier = {});
   ~JobQueue();

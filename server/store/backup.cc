@@ -139,8 +139,7 @@ Result<void> restore_into(const std::filesystem::path& file, const std::filesyst
   {
     Database database;
     if (auto opened = database.open(aside); !opened.ok()) return opened;
-    const auto tables =
-        database.number("SELECT count(*) FROM sqlite_schema WHERE name = 'backup_chunk'");
+    const auto tables = database.number("SELECT count(*) FROM sqlite_schema WHERE name = 'backup_chunk'");
     if (!tables.ok() || *tables != 1)
       return tin::base::error(Code::kUnsupported, file.string() + " is no backup of tinsmith");
     if (auto ours = check_schema(database); !ours.ok()) return ours;
@@ -177,7 +176,8 @@ Result<void> back_up(const std::filesystem::path& folder, const std::filesystem:
 }
 
 Result<void> restore(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  if (!std::filesystem::exists(file)) return tin::base::error(Code::kNotFound, "there is no " + file.string());
+  if (!std::filesystem::exists(file))
+    return tin::base::error(Code::kNotFound, "there is no " + file.string());
   std::error_code ignored;
   if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder, ignored))
     return tin::base::error(Code::kConflict, folder.string() + " is not empty");
@@ -206,8 +206,7 @@ Result<std::vector<std::string>> find_damage(const std::filesystem::path& folder
       if (const std::string line = check.bytes(0); line != "ok") damage.push_back("the database: " + line);
     }
   }
-  const auto lost = database.number(
-      "SELECT count(*) FROM journal WHERE tin NOT IN (SELECT key FROM tin)");
+  const auto lost = database.number("SELECT count(*) FROM journal WHERE tin NOT IN (SELECT key FROM tin)");
   if (!lost.ok()) return lost.error();
   if (*lost > 0) damage.push_back(std::to_string(*lost) + " revisions belong to no TIN");
   const auto tins = read_tins(database);

@@ -11,17 +11,18 @@ using tin::base::Code;
 using tin::base::Result;
 
 constexpr std::size_t kMostInGroup = 1024;
-// SQLite would write the log into the database within a commit, while clients wait; here it is done after they
-// have their answers, when the log has so many pages.
+// SQLite would write the log into the database within a commit, while clients wait; here it is done after
+// they have their answers, when the log has so many pages.
 constexpr int kLogPages = 2000;
 
 }  // namespace
 
 struct Committer::Waiting {
   const Work& work;
-  Result<void> result;
+  Result<void> result = {};  // of the work
+  bool durable = false;      // whatever goes wrong elsewhere, only this acknowledges
   bool done = false;
-  std::condition_variable changed;
+  std::condition_variable changed = {};
 };
 
 Committer::Committer(Database& database) : database_(database) {
@@ -39,13 +40,14 @@ Committer::~Committer() {
 }
 
 Result<void> Committer::commit(const Work& work) {
-  Waiting self{work, {}, false, {}};
+  Waiting self{work};
   std::unique_lock lock(mutex_);
   if (failed_) return *failed_;
   waiting_.push_back(&self);
   given_.notify_one();
   self.changed.wait(lock, [&] { return self.done; });
-  return std::move(self.result);
+  if (self.durable || !self.result.ok()) return std::move(self.result);
+  return tin::base::error(Code::kStorage, "the write was not committed");
 }
 
 Result<void> Committer::writable() const {
@@ -74,14 +76,17 @@ void Committer::run() {
     group.assign(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(size));
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(size));
     lock.unlock();
-    commit_group(group);
+    try {
+      commit_group(group);
+    } catch (const std::bad_alloc&) {  // while saying what went wrong; nobody is acknowledged by that
+    }
     lock.lock();
     if (database_.disk_failed() && !failed_) {
       failed_ = tin::base::error(
           Code::kStorage, "the disk failed under a write: nothing is written until a restart, reads go on");
     }
     for (Waiting* one : group) {
-      writes_ += one->result.ok() ? 1 : 0;
+      writes_ += one->durable && one->result.ok() ? 1 : 0;
       one->done = true;
       one->changed.notify_one();
     }
@@ -91,8 +96,8 @@ void Committer::run() {
   }
 }
 
-/// What cannot be committed together is tried one by one: a write that is too large for the disk must not take
-/// the others with it.
+/// What cannot be committed together is tried one by one: a write that is too large for the disk must not
+/// take the others with it.
 void Committer::commit_group(const std::vector<Waiting*>& group) {
   const auto together = try_group(group);
   if (together.ok()) return;
@@ -101,6 +106,7 @@ void Committer::commit_group(const std::vector<Waiting*>& group) {
     return;
   }
   for (Waiting* one : group) {
+    one->result = {};
     const auto alone = try_group({one});
     if (!alone.ok()) one->result = alone;
   }
@@ -124,11 +130,11 @@ Result<void> Committer::try_group(const std::vector<Waiting*>& group) {
     }
     if (!any) return {};
     auto committed = transaction.commit();
-    if (committed.ok()) {
-      const std::lock_guard guard(mutex_);
-      ++commits_;
-    }
-    return committed;
+    if (!committed.ok()) return committed;
+    for (Waiting* one : group) one->durable = true;
+    const std::lock_guard guard(mutex_);
+    ++commits_;
+    return {};
   } catch (const std::bad_alloc&) {
     return tin::base::error(Code::kStorage, "there is not enough memory to write");
   } catch (const std::exception& exception) {
@@ -155,7 +161,8 @@ Result<void> Committer::run_within_savepoint(const Work& work) {
 
 void Committer::cut_log_back() {
   if (database_.log_pages() < kLogPages || database_.disk_failed()) return;
-  // A failure shows in disk_failed(); a full disk or a reader in the way lets the log grow until the next time.
+  // A failure shows in disk_failed(); a full disk or a reader in the way lets the log grow until the next
+  // time.
   database_.checkpoint_log();
 }
 

@@ -1,5 +1,5 @@
-// Group commit: one thread that writes, and takes all writes that wait into one transaction. A sync of the disk
-// costs the same for one edit and for a hundred.
+// Group commit: one thread that writes, and takes all writes that wait into one transaction. A sync of the
+// disk costs the same for one edit and for a hundred.
 #pragma once
 
 #include <condition_variable>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <new>
 #include <random>
 #include <system_error>
 #include <utility>
@@ -135,8 +136,12 @@ Result<std::string> Files::get(const FileReference& file) const {
   return bytes;
 }
 
-void Files::remove(const std::string& name) {
-  if (!name.empty()) disk_->remove(folder_ / name);
+void Files::remove(const std::string& name) noexcept {
+  if (name.empty()) return;
+  try {
+    disk_->remove(folder_ / name);
+  } catch (const std::bad_alloc&) {  // the next start removes what no row names
+  }
 }
 
 void Files::remove_all_but(const std::vector<std::string>& kept) {

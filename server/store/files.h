@@ -48,7 +48,7 @@ class Files {
   tin::base::Result<FileReference> put(const std::vector<std::string_view>& parts, std::string_view suffix);
   /// Errors: kStorage when the file is missing, or is not what was put.
   tin::base::Result<std::string> get(const FileReference& file) const;
-  void remove(const std::string& name);
+  void remove(const std::string& name) noexcept;
   /// Removes all files but these: what a crash left between a file and its row. `kept` ascends.
   void remove_all_but(const std::vector<std::string>& kept);
 

@@ -27,7 +27,8 @@ Result<void> Database::open(const std::filesystem::path& file, const std::string
   const int how =
       access == Access::kWrite ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   const int flags = how | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
-  if (!succeeded(sqlite3_open_v2(file.c_str(), &handle_, flags, vfs.empty() ? nullptr : vfs.c_str()))) return error();
+  if (!succeeded(sqlite3_open_v2(file.c_str(), &handle_, flags, vfs.empty() ? nullptr : vfs.c_str())))
+    return error();
   if (!succeeded(sqlite3_busy_timeout(handle_, kBusyTimeoutMs))) return error();
   return {};
 }

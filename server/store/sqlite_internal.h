@@ -26,8 +26,8 @@ class Database {
   Database& operator=(const Database&) = delete;
 
   enum class Access { kWrite, kRead };
-  /// `vfs` names SQLite's interface to the system; empty: the usual one. For reading, the file must be there, and is
-  /// left as it is. Errors: kStorage. To be called once.
+  /// `vfs` names SQLite's interface to the system; empty: the usual one. For reading, the file must be there,
+  /// and is left as it is. Errors: kStorage. To be called once.
   tin::base::Result<void> open(const std::filesystem::path& file, const std::string& vfs = {},
                                Access access = Access::kWrite);
 

@@ -13,7 +13,8 @@ using tin::base::Result;
 // Rows stay far below SQLite's limit of 10^9 bytes, and memory for one is small.
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 
-Result<void> write_chunks(Database& database, std::int64_t key, std::uint64_t revision, std::string_view bytes) {
+Result<void> write_chunks(Database& database, std::int64_t key, std::uint64_t revision,
+                          std::string_view bytes) {
   for (std::int64_t chunk = 0; !bytes.empty(); ++chunk) {
     const std::string_view piece = bytes.substr(0, kChunkBytes);
     Query insert =
@@ -195,7 +196,8 @@ Result<std::vector<JournalRow>> read_rows(Database& database, const Head& head, 
     if (!*more) break;
     JournalRow row{query.natural(0), query.bytes(1), {query.integer(2), query.bytes(3), query.bytes(4)}};
     const std::uint64_t expected =
-        rows.empty() ? row.revision : (range.newest_first ? rows.back().revision - 1 : rows.back().revision + 1);
+        rows.empty() ? row.revision
+                     : (range.newest_first ? rows.back().revision - 1 : rows.back().revision + 1);
     if (row.revision != expected || query.integer(5) != checksum(row))
       return damaged(head.tin.id, "revision " + std::to_string(expected) + " of its journal");
     bytes += row.record.size();
@@ -227,12 +229,14 @@ Result<void> trim_rows(Database& database, const Head& head, const Retention& ke
 }
 
 Result<std::optional<Answer>> read_answer(Database& database, const Head& head, std::string_view key) {
-  Query query = database.query("SELECT key, request, bytes, time_ms, crc FROM answer WHERE tin = ? AND key = ?");
+  Query query =
+      database.query("SELECT key, request, bytes, time_ms, crc FROM answer WHERE tin = ? AND key = ?");
   const auto row = query.bind(head.key).bind_text(key).next();
   if (!row.ok()) return row.error();
   if (!*row) return std::optional<Answer>();
   Answer answer{query.bytes(0), query.bytes(1), query.bytes(2), query.integer(3)};
-  if (query.integer(4) != checksum(answer)) return damaged(head.tin.id, "the answer under an idempotency key");
+  if (query.integer(4) != checksum(answer))
+    return damaged(head.tin.id, "the answer under an idempotency key");
   return std::optional<Answer>(std::move(answer));
 }
 

@@ -55,8 +55,8 @@ class SqliteStore : public Store {
   Result<void> open_database(const std::filesystem::path& file, const SqliteOptions& options);
   Result<void> limit_size(std::int64_t bytes);
   Result<NewCheckpoint> place(std::string_view checkpoint);
-  /// Removes files that a failed write leaves without a row. Where a failing disk left it open whether the row
-  /// is there, they stay, and the next start decides.
+  /// Removes files that a failed write leaves without a row. Where a failing disk left it open whether the
+  /// row is there, they stay, and the next start decides.
   void drop_unnamed(const Result<void>& written, std::span<const FileReference> files);
   Result<void> commit(const Committer::Work& work);
   template <class Step>
@@ -101,7 +101,8 @@ Result<void> SqliteStore::open_for_reading(const std::filesystem::path& folder) 
   const std::filesystem::path file = folder / "tinsmith.sqlite3";
   auto opened = reading_.open(file, {}, Database::Access::kRead);
   if (opened.ok()) opened = check_schema(reading_);
-  if (!opened.ok()) return tin::base::error(opened.error().code, file.string() + ": " + opened.error().message);
+  if (!opened.ok())
+    return tin::base::error(opened.error().code, file.string() + ": " + opened.error().message);
   auto files = Files::open(folder / "files", std::make_shared<Disk>());
   if (!files.ok()) return files.error();
   files_ = *std::move(files);
@@ -152,8 +153,8 @@ Result<void> SqliteStore::change(std::string_view tin, Step step) {
   });
 }
 
-Result<void> SqliteStore::create_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint,
-                                     std::string_view source) {
+Result<void> SqliteStore::create_tin(const TinRecord& tin, std::uint64_t revision,
+                                     std::string_view checkpoint, std::string_view source) {
   std::array<FileReference, 2> files;
   if (!source.empty()) {
     auto put = files_->put({source}, "source");
@@ -166,8 +167,8 @@ Result<void> SqliteStore::create_tin(const TinRecord& tin, std::uint64_t revisio
     return placed.error();
   }
   files[1] = placed->file;
-  auto made = commit(
-      [&](Database& database) { return insert_tin(database, tin, revision, *placed, files[0]); });
+  auto made =
+      commit([&](Database& database) { return insert_tin(database, tin, revision, *placed, files[0]); });
   drop_unnamed(made, files);
   return made;
 }
@@ -228,8 +229,7 @@ Result<void> SqliteStore::trim_journal(std::string_view tin, const Retention& ke
 }
 
 Result<void> SqliteStore::trim_answers(std::int64_t before_ms, std::uint64_t most) {
-  return commit(
-      [&](Database& database) { return trim_answer_rows(database, before_ms, most); });
+  return commit([&](Database& database) { return trim_answer_rows(database, before_ms, most); });
 }
 
 Result<std::vector<TinRecord>> SqliteStore::list() {
@@ -298,9 +298,8 @@ Result<void> SqliteStore::put_job(const JobRow& job) {
 }
 
 Result<void> SqliteStore::remove_job(std::string_view id) {
-  return commit([&](Database& database) {
-    return database.query("DELETE FROM job WHERE id = ?").bind_text(id).run();
-  });
+  return commit(
+      [&](Database& database) { return database.query("DELETE FROM job WHERE id = ?").bind_text(id).run(); });
 }
 
 Result<std::vector<JobRow>> SqliteStore::list_jobs() {

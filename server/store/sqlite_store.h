@@ -33,9 +33,9 @@ struct SqliteOptions {
 tin::base::Result<std::unique_ptr<Store>> open_sqlite_store(const std::filesystem::path& folder,
                                                             const SqliteOptions& options = {});
 
-/// The store of a folder for reading, beside a server that may be writing it: what it holds at each call. It takes no
-/// lock, repairs nothing, and refuses writes (kStorage). Errors: kNotFound when there is no store; kUnsupported when
-/// another version wrote it; kStorage.
+/// The store of a folder for reading, beside a server that may be writing it: what it holds at each call. It
+/// takes no lock, repairs nothing, and refuses writes (kStorage). Errors: kNotFound when there is no store;
+/// kUnsupported when another version wrote it; kStorage.
 tin::base::Result<std::unique_ptr<Store>> open_sqlite_store_for_reading(const std::filesystem::path& folder);
 
 }  // namespace server::store

@@ -1,11 +1,11 @@
-// Where TINs outlive the process: a checkpoint per TIN, a journal of revisions, the source that it was made from,
-// the answers that were given under idempotency keys, and the jobs. Bytes only: what they mean is tin/codec's
-// and the caller's business.
+// Where TINs outlive the process: a checkpoint per TIN, a journal of revisions, the source that it was made
+// from, the answers that were given under idempotency keys, and the jobs. Bytes only: what they mean is
+// tin/codec's and the caller's business.
 //
 //   auto store = open_sqlite_store("/var/lib/tinsmith");
 //   (*store)->create_tin({"alps", "The Alps", now_ms}, 1, encode_checkpoint(...));
-//   (*store)->append("alps", {{2, encode_change(change), {now_ms, "", ""}}});  // on disk: now answer the client
-//   auto loaded = (*store)->load("alps");                                      // after a restart
+//   (*store)->append("alps", {{2, encode_change(change), {now_ms, "", ""}}});  // on disk: now answer the
+//   client auto loaded = (*store)->load("alps");                                      // after a restart
 #pragma once
 
 #include <cstdint>
@@ -109,18 +109,19 @@ struct JobRow {
   friend bool operator==(const JobRow&, const JobRow&) = default;
 };
 
-/// Thread-safe. Whatever returns success is durable: it survives kill -9 and power loss. Writers that come at one
-/// time share one commit. Whatever returns an error has changed nothing, save for errors of the disk itself
-/// (kStorage), after which what was refused may turn out to be there when the store is opened again; the store
-/// takes no more writes then, see writable().
+/// Thread-safe. Whatever returns success is durable: it survives kill -9 and power loss. Writers that come at
+/// one time share one commit. Whatever returns an error has changed nothing, save for errors of the disk
+/// itself (kStorage), after which what was refused may turn out to be there when the store is opened again;
+/// the store takes no more writes then, see writable().
 ///
-/// Every function may fail with kStorage, and whatever writes with kNoSpace; other errors are stated with each.
+/// Every function may fail with kStorage, and whatever writes with kNoSpace; other errors are stated with
+/// each.
 class Store {
  public:
   virtual ~Store() = default;
 
-  /// `source` is kept beside the checkpoint for as long as the TIN is there, and is never written again; an empty
-  /// one is none. Errors: kConflict when there is a TIN with this id.
+  /// `source` is kept beside the checkpoint for as long as the TIN is there, and is never written again; an
+  /// empty one is none. Errors: kConflict when there is a TIN with this id.
   virtual tin::base::Result<void> create_tin(const TinRecord& tin, std::uint64_t revision,
                                              std::string_view checkpoint, std::string_view source = {}) = 0;
   /// Errors: kNotFound.
@@ -128,8 +129,8 @@ class Store {
   /// Removes the TIN with all that belongs to it. Errors: kNotFound.
   virtual tin::base::Result<void> remove_tin(std::string_view tin) = 0;
 
-  /// Adds revisions and answers, all or none. Errors: kNotFound; kConflict unless each revision is the last one's
-  /// successor, or when there is an answer under the key.
+  /// Adds revisions and answers, all or none. Errors: kNotFound; kConflict unless each revision is the last
+  /// one's successor, or when there is an answer under the key.
   virtual tin::base::Result<void> append(std::string_view tin, std::span<const Entry> entries) = 0;
   /// Replaces the checkpoint by that of a later revision. The journal before it is kept: revisions are
   /// history. Errors: kNotFound; kConflict when `revision` is older than the checkpoint or newer than the
@@ -145,8 +146,8 @@ class Store {
   virtual tin::base::Result<std::vector<TinRecord>> list() = 0;
   /// Errors: kNotFound; kStorage also when a row is missing or does not match its checksum.
   virtual tin::base::Result<Loaded> load(std::string_view tin) = 0;
-  /// The source that the TIN was created with; empty when it has none. Errors: kNotFound; kStorage also when it
-  /// is missing or does not match its checksum.
+  /// The source that the TIN was created with; empty when it has none. Errors: kNotFound; kStorage also when
+  /// it is missing or does not match its checksum.
   virtual tin::base::Result<std::string> load_source(std::string_view tin) = 0;
   /// Errors: kNotFound; kStorage also when a row is missing or does not match its checksum.
   virtual tin::base::Result<std::vector<JournalRow>> read_journal(std::string_view tin,
@@ -154,7 +155,8 @@ class Store {
   /// Errors: kNotFound.
   virtual tin::base::Result<JournalExtent> journal_extent(std::string_view tin) = 0;
   /// Nothing when none was given under this key. Errors: kNotFound.
-  virtual tin::base::Result<std::optional<Answer>> find_answer(std::string_view tin, std::string_view key) = 0;
+  virtual tin::base::Result<std::optional<Answer>> find_answer(std::string_view tin,
+                                                               std::string_view key) = 0;
 
   /// Adds a job, or replaces what is known of it.
   virtual tin::base::Result<void> put_job(const JobRow& job) = 0;

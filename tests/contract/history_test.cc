@@ -9,7 +9,8 @@ namespace {
 class HistoryTest : public testing::Test {
  protected:
   HistoryTest() : server_([](server::Config& config) { config.limits.listeners = 2; }) {
-    EXPECT_EQ(server_.post_json("/tins", R"({"id":"hill","vertices":[[0,0,1],[100,0,2],[0,100,3]]})").status, 201);
+    EXPECT_EQ(server_.post_json("/tins", R"({"id":"hill","vertices":[[0,0,1],[100,0,2],[0,100,3]]})").status,
+              201);
   }
 
   RawAnswer edit(const std::string& ops, const std::string& fields = {}, const std::string& more = {}) {
@@ -29,8 +30,9 @@ TEST_F(HistoryTest, RevisionsSayWhoDidWhatWhere) {
                  R"(,"author":"ada","note":"two posts")")
                 .status,
             200);
-  ASSERT_EQ(edit(R"({"op":"move","id":4,"x":12,"y":20},{"op":"remove","id":5},{"op":"set-z","id":1,"z":9})").status,
-            200);
+  ASSERT_EQ(
+      edit(R"({"op":"move","id":4,"x":12,"y":20},{"op":"remove","id":5},{"op":"set-z","id":1,"z":9})").status,
+      200);
   const Json page = Json::parse(server_.get("/tins/hill/revisions").body);
   EXPECT_EQ(page["current"], 3);
   EXPECT_EQ(page["oldest"], 2);
@@ -84,7 +86,8 @@ TEST_F(HistoryTest, UndoIsExactAndIsUndone) {
   const RawAnswer refused = undo(2);
   EXPECT_EQ(refused.status, 409);
   EXPECT_NE(refused.body.find("vertex 4 was changed again by revision 3"), std::string::npos) << refused.body;
-  EXPECT_EQ(Json::parse(server_.get("/tins/hill/revisions").body)["revisions"][1]["note"], "undo of revision 3");
+  EXPECT_EQ(Json::parse(server_.get("/tins/hill/revisions").body)["revisions"][1]["note"],
+            "undo of revision 3");
 }
 
 TEST_F(HistoryTest, AKeySentAgainGetsTheSameAnswerAndHasOneEffect) {
@@ -145,14 +148,16 @@ TEST_F(HistoryTest, AStreamResumesAfterTheLastEventThatArrived) {
   for (int i = 0; i < 3; ++i)
     ASSERT_EQ(edit(R"({"op":"set-z","id":1,"z":)" + std::to_string(i + 10) + "}").status, 200);
   support::RawClient client(server_.port());
-  client.send("GET /tins/hill/changes HTTP/1.1\r\nHost: x\r\nAccept: text/event-stream\r\nLast-Event-ID: 3\r\n\r\n");
+  client.send(
+      "GET /tins/hill/changes HTTP/1.1\r\nHost: x\r\nAccept: text/event-stream\r\nLast-Event-ID: 3\r\n\r\n");
   const std::string text = read_until(client, "id: 4\n");
   EXPECT_NE(text.find("id: 4\n"), std::string::npos);
   EXPECT_EQ(text.find("id: 3\n"), std::string::npos);
 }
 
 TEST_F(HistoryTest, ListenersHaveABoundedNumberOfPlaces) {
-  const std::string listen = "GET /tins/hill/changes HTTP/1.1\r\nHost: x\r\nAccept: text/event-stream\r\n\r\n";
+  const std::string listen =
+      "GET /tins/hill/changes HTTP/1.1\r\nHost: x\r\nAccept: text/event-stream\r\n\r\n";
   {
     support::RawClient first(server_.port()), second(server_.port());
     first.send(listen);

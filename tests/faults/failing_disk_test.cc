@@ -1,6 +1,6 @@
-// Every write and every sync fails once, one after the other; the disk is full, and is freed. What was acknowledged
-// is there, what was refused has changed nothing, reading goes on, and no write is taken on trust after the disk
-// failed.
+// Every write and every sync fails once, one after the other; the disk is full, and is freed. What was
+// acknowledged is there, what was refused has changed nothing, reading goes on, and no write is taken on
+// trust after the disk failed.
 #include <gtest/gtest.h>
 
 #include "tests/faults/faulty_disk.h"
@@ -50,7 +50,8 @@ class FailingDiskTest : public testing::Test {
       EXPECT_EQ(scenario.revision(), 7U) << "without a failure everything is taken";
     }
     ASSERT_GT(most, 10U);
-    for (std::uint64_t nth = 1; nth <= most && !HasFailure(); ++nth) run_with_failure(operation, nth, failure);
+    for (std::uint64_t nth = 1; nth <= most && !HasFailure(); ++nth)
+      run_with_failure(operation, nth, failure);
   }
 };
 
@@ -73,8 +74,8 @@ TEST_F(FailingDiskTest, AFullDiskRefusesEditsAndTakesThemAgainWhenThereIsRoom) {
   ASSERT_TRUE(scenario.edit_once());
   disk.set_full(true);
   for (int i = 0; i < 5; ++i) {
-    const auto refused =
-        scenario.tin().edit(std::vector<server::app::WorldEdit>{tin::terrain::SetZ{server::app::VertexId(1), 5}}, {});
+    const auto refused = scenario.tin().edit(
+        std::vector<server::app::WorldEdit>{tin::terrain::SetZ{server::app::VertexId(1), 5}}, {});
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().code, tin::base::Code::kNoSpace);
     EXPECT_EQ(scenario.broken_for_readers(), "");

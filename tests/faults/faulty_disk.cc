@@ -27,9 +27,15 @@ struct File {
   char* path;
   sqlite3_file* below() { return reinterpret_cast<sqlite3_file*>(this + 1); }
 };
-File* of(sqlite3_file* file) { return reinterpret_cast<File*>(file); }
-sqlite3_file* below(sqlite3_file* file) { return of(file)->below(); }
-sqlite3_vfs* below_vfs() { return sqlite3_vfs_find("unix"); }
+File* of(sqlite3_file* file) {
+  return reinterpret_cast<File*>(file);
+}
+sqlite3_file* below(sqlite3_file* file) {
+  return of(file)->below();
+}
+sqlite3_vfs* below_vfs() {
+  return sqlite3_vfs_find("unix");
+}
 
 int close_file(sqlite3_file* file) {
   const int code = below(file)->pMethods->xClose(below(file));
@@ -48,7 +54,8 @@ int write_file(sqlite3_file* file, const void* bytes, int size, sqlite3_int64 of
   return below(file)->pMethods->xWrite(below(file), bytes, size, offset);
 }
 int truncate_file(sqlite3_file* file, sqlite3_int64 size) {
-  if (const auto failure = present->strikes(Operation::kWrite)) return code_of(*failure, SQLITE_IOERR_TRUNCATE);
+  if (const auto failure = present->strikes(Operation::kWrite))
+    return code_of(*failure, SQLITE_IOERR_TRUNCATE);
   if (of(file)->path != nullptr) {
     present->record(
         {.kind = Event::kTruncate, .path = of(file)->path, .offset = static_cast<std::uint64_t>(size)});
@@ -64,7 +71,9 @@ int sync_file(sqlite3_file* file, int flags) {
 const sqlite3_io_methods kMethods = {
     3,
     close_file,
-    [](sqlite3_file* f, void* b, int n, sqlite3_int64 o) { return below(f)->pMethods->xRead(below(f), b, n, o); },
+    [](sqlite3_file* f, void* b, int n, sqlite3_int64 o) {
+      return below(f)->pMethods->xRead(below(f), b, n, o);
+    },
     write_file,
     truncate_file,
     sync_file,

@@ -1,5 +1,5 @@
-// A disk that fails where a test wants it to, or remembers everything that was done to it: under SQLite as a VFS,
-// and under the store's own files as its Disk.
+// A disk that fails where a test wants it to, or remembers everything that was done to it: under SQLite as a
+// VFS, and under the store's own files as its Disk.
 //
 //   FaultyDisk disk;
 //   auto store = open_sqlite_store(folder, disk.options());
@@ -30,7 +30,7 @@ struct Event {
   enum Kind { kWrite, kTruncate, kSync, kRemove, kRename, kSyncFolder, kAcknowledged };
   Kind kind;
   std::string path = {};
-  std::string to = {};  // of a rename
+  std::string to = {};       // of a rename
   std::uint64_t offset = 0;  // or the size after a truncation, or the number acknowledged
   std::string bytes = {};
 };

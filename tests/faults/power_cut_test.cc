@@ -1,5 +1,5 @@
-// The power fails at any moment: whatever was synced is there, of everything later each sector of 512 bytes is
-// there or not. Nothing acknowledged is lost then, and nothing is torn.
+// The power fails at any moment: whatever was synced is there, of everything later each sector of 512 bytes
+// is there or not. Nothing acknowledged is lost then, and nothing is torn.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The program itself is killed and stopped while clients edit: nothing acknowledged is lost, nothing is torn, each key
-// has one effect, and a backup taken meanwhile is whole.
+// The program itself is killed and stopped while clients edit: nothing acknowledged is lost, nothing is torn,
+// each key has one effect, and a backup taken meanwhile is whole.
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
@@ -47,7 +47,8 @@ class ProcessTest : public ServedTest {
     for (int y = 0; y < kSide; ++y) {
       for (int x = 0; x < kSide; ++x) vertices.push_back({x, y, x + y});
     }
-    ASSERT_EQ(served_->http().post_json("/tins", Json{{"id", "t"}, {"vertices", vertices}}.dump()).status, 201);
+    ASSERT_EQ(served_->http().post_json("/tins", Json{{"id", "t"}, {"vertices", vertices}}.dump()).status,
+              201);
   }
 
   static void prepare(Client& client, int number) {
@@ -117,7 +118,8 @@ class ProcessTest : public ServedTest {
       pending_insertions += !client.pending_body.empty() && client.pending_id == 0 ? 1 : 0;
       for (const auto& [id, z] : client.heights) {
         const double found = state->terrain.vertex(server::app::VertexId(static_cast<std::uint64_t>(id)))->z;
-        const bool pending = !client.pending_body.empty() && client.pending_id == id && found == client.pending_z;
+        const bool pending =
+            !client.pending_body.empty() && client.pending_id == id && found == client.pending_z;
         EXPECT_TRUE(found == z || pending) << "vertex " << id << ": " << found << " instead of " << z;
       }
     }

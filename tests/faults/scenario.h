@@ -24,8 +24,8 @@ class Scenario {
   /// Makes the folder's store and TIN if they are not there. Throws if it cannot.
   Scenario(const std::filesystem::path& folder, const server::store::SqliteOptions& options);
 
-  /// Edits with and without keys, an edit that is sent twice, an undo, checkpoints, other TINs that come and go.
-  /// Calls `acknowledged(revision)` after each success. Errors are part of the game.
+  /// Edits with and without keys, an edit that is sent twice, an undo, checkpoints, other TINs that come and
+  /// go. Calls `acknowledged(revision)` after each success. Errors are part of the game.
   void run(const std::function<void(std::uint64_t)>& acknowledged = {});
   /// One edit; whether it was acknowledged.
   bool edit_once();
@@ -50,8 +50,10 @@ class Scenario {
   int edits_ = 0;
 };
 
-/// Opens the folder with nothing failing: TIN "t" must be at the acknowledged revision with its digest, or at the
-/// one after it, which was under way, and then taking that back must give the digest. "" or what is wrong.
-std::string broken_on_disk(const std::filesystem::path& folder, std::uint64_t revision, const std::string& digest);
+/// Opens the folder with nothing failing: TIN "t" must be at the acknowledged revision with its digest, or at
+/// the one after it, which was under way, and then taking that back must give the digest. "" or what is
+/// wrong.
+std::string broken_on_disk(const std::filesystem::path& folder, std::uint64_t revision,
+                           const std::string& digest);
 
 }  // namespace tests::faults

@@ -1,5 +1,5 @@
-// A terrain's vertices without their mesh: what a list of changes makes of them, in linear time. A checkpoint is
-// brought forward so, and a large undo prepared, without the terrain that is being served.
+// A terrain's vertices without their mesh: what a list of changes makes of them, in linear time. A checkpoint
+// is brought forward so, and a large undo prepared, without the terrain that is being served.
 //
 //   VertexSet set(checkpoint.vertices, checkpoint.next_id);
 //   for (const Change& change : journal) set.replay(change);
@@ -23,8 +23,8 @@ class VertexSet {
   /// Requires: `by_id` ascends.
   VertexSet(std::vector<Vertex> by_id, VertexId next_id) : base_(std::move(by_id)), next_id_(next_id) {}
 
-  /// Errors: kConflict when a step does not fit the set; `where` is "/i". The set is of no use then. Whether two
-  /// vertices come to stand at one position is not asked here. Cost: O(log n) per step.
+  /// Errors: kConflict when a step does not fit the set; `where` is "/i". The set is of no use then. Whether
+  /// two vertices come to stand at one position is not asked here. Cost: O(log n) per step.
   base::Result<void> replay(const Change& change);
 
   /// By ascending id. Cost: O(n).

@@ -21,7 +21,7 @@ class FailingStore : public server::store::Store {
 
   bool fail = false;
   std::chrono::milliseconds delay{0};  // of a commit
-  std::size_t appended = 0;  // revisions
+  std::size_t appended = 0;            // revisions
   std::size_t commits = 0;
 
   Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view,

@@ -18,13 +18,13 @@ namespace {
 
 using namespace std::chrono_literals;
 using server::app::Catalogue;
-using tests::app::FailingStore;
 using server::app::InsertAt;
 using server::app::MoveTo;
 using server::app::Tin;
 using server::app::Version;
 using server::app::VertexId;
 using server::app::WorldEdit;
+using tests::app::FailingStore;
 using tin::base::Code;
 using tin::base::Result;
 using tin::terrain::Duplicates;
@@ -169,8 +169,8 @@ TEST_F(TinTest, WhatIsNotDurableYetIsSeenByNobody) {
 
 TEST_F(TinTest, UndoIsExactAndCanBeUndone) {
   const std::string before = digest();
-  const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, Remove{VertexId(45)}, MoveTo{VertexId(9), 3.3, 3.3},
-                                     SetZ{VertexId(3), 8}};
+  const std::vector<WorldEdit> edits{InsertAt{0.5, 0.5, 9}, Remove{VertexId(45)},
+                                     MoveTo{VertexId(9), 3.3, 3.3}, SetZ{VertexId(3), 8}};
   ASSERT_TRUE(tin_.edit(edits, {{}, info_}).ok());
   const std::string edited = digest();
   ASSERT_TRUE(tin_.revert(2, {{}, info_}).ok());
@@ -227,8 +227,9 @@ TEST(LargeUndoTest, IsBuiltAsideAndJustAsExact) {
   EXPECT_EQ(digest(), removed);
   ASSERT_TRUE(tin.edit(std::vector<WorldEdit>{InsertAt{99, 0, 8}}, {}).ok());
   EXPECT_EQ(tin.revert(6, {}).error().code, Code::kConflict) << "vertex 100 stood there";
-  EXPECT_EQ(tin.read([](const Terrain& t, std::uint64_t) { return tin::mesh::validate(t.mesh()).value_or(""); }),
-            "");
+  EXPECT_EQ(
+      tin.read([](const Terrain& t, std::uint64_t) { return tin::mesh::validate(t.mesh()).value_or(""); }),
+      "");
 }
 
 TEST_F(TinTest, OneVertexPastTheLimitIsRefused) {

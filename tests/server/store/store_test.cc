@@ -219,9 +219,11 @@ TEST_P(StoreTest, OfManyThreadsWithOneRevisionOneWins) {
 TEST_P(StoreTest, EntriesComeTogetherOrNotAtAll) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
   const Answer answer{"key", "request", "answer", 5};
-  const std::vector<Entry> two{{JournalRow{2, "two", kInfo}, answer}, {JournalRow{3, "three", {}}, std::nullopt}};
+  const std::vector<Entry> two{{JournalRow{2, "two", kInfo}, answer},
+                               {JournalRow{3, "three", {}}, std::nullopt}};
   ASSERT_TRUE(succeeds(store_->append("alps", two)));
-  const std::vector<Entry> gap{{JournalRow{4, "four", {}}, std::nullopt}, {JournalRow{6, "six", {}}, std::nullopt}};
+  const std::vector<Entry> gap{{JournalRow{4, "four", {}}, std::nullopt},
+                               {JournalRow{6, "six", {}}, std::nullopt}};
   EXPECT_TRUE(fails(store_->append("alps", gap), Code::kConflict));
   const std::vector<Entry> again{{JournalRow{4, "four", {}}, Answer{"key", "other", "", 6}}};
   EXPECT_TRUE(fails(store_->append("alps", again), Code::kConflict));

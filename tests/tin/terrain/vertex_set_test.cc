@@ -38,10 +38,17 @@ TEST(VertexSetTest, FollowsATerrainThroughAnyHistory) {
       const exact::Point at{static_cast<std::int32_t>(below(1300)), static_cast<std::int32_t>(below(1300))};
       const VertexId id(1 + below(terrain.next_id().value()));
       switch (below(4)) {
-        case 0: edits.emplace_back(Insert{at, double(below(9))}); break;
-        case 1: edits.emplace_back(Remove{id}); break;
-        case 2: edits.emplace_back(Move{id, at}); break;
-        default: edits.emplace_back(SetZ{id, double(below(9))});
+        case 0:
+          edits.emplace_back(Insert{at, double(below(9))});
+          break;
+        case 1:
+          edits.emplace_back(Remove{id});
+          break;
+        case 2:
+          edits.emplace_back(Move{id, at});
+          break;
+        default:
+          edits.emplace_back(SetZ{id, double(below(9))});
       }
     }
     const auto applied = terrain.apply(edits, Duplicates::kReplace);
