@@ -377,12 +377,17 @@ TEST(JobMemoryTest, AJobThatCannotBeRememberedIsNotTaken) {
 
 TEST(JobMemoryTest, ARestartKeepsResultsAndDismissesWhatHadNotFinished) {
   Notebook notebook;
-  JobStatus done{.id = "done", .kind = "k", .description = "d", .state = JobState::kSuccessful};
+  const auto job = [](const char* id, JobState state) {
+    JobStatus status;
+    status.id = id;
+    status.state = state;
+    return status;
+  };
+  JobStatus done = job("done", JobState::kSuccessful);
   done.finished_ms = 5;
   done.result = "{\"a\":1}";
-  const JobStatus ran{.id = "ran", .kind = "k", .description = "d", .state = JobState::kRunning};
-  const JobStatus waited{.id = "waited", .kind = "k", .description = "d", .state = JobState::kAccepted};
-  for (const JobStatus& job : {done, ran, waited}) ASSERT_TRUE(notebook.remember(job).ok());
+  const JobStatus ran = job("ran", JobState::kRunning), waited = job("waited", JobState::kAccepted);
+  for (const JobStatus& each : {done, ran, waited}) ASSERT_TRUE(notebook.remember(each).ok());
   JobQueue jobs({}, &notebook, {done, ran, waited});
   EXPECT_EQ(jobs.status("done")->result, done.result);
   for (const char* id : {"ran", "waited"}) {
