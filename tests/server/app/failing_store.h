@@ -1,6 +1,7 @@
 // A store in memory that can be told to fail.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -22,7 +23,7 @@ class FailingStore : public server::store::Store {
   bool fail = false;
   std::chrono::milliseconds delay{0};  // of a commit
   std::size_t appended = 0;            // revisions
-  std::size_t commits = 0;
+  std::atomic<std::size_t> commits{0};
 
   Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view,
                           std::string_view) override {
