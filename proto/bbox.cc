@@ -53,24 +53,42 @@ Result<std::vector<double>> parse_list(std::string_view text, const std::string&
   return numbers;
 }
 
-}  // namespace
-
-Result<Bbox> parse_bbox(std::string_view text, std::string where) {
+Result<Bbox> parse_any_box(std::string_view text, const std::string& where) {
   auto list = parse_list(text, where);
   if (!list) return std::move(list).error();
   const std::vector<double>& n = *list;
-  Bbox box;
-  if (n.size() == 4) {
-    box = {n[0], n[1], n[2], n[3], std::nullopt, std::nullopt};
-  } else if (n.size() == 6) {
-    box = {n[0], n[1], n[3], n[4], n[2], n[5]};
-  } else {
-    return error(Code::kMalformed, "a box is minx,miny,maxx,maxy (or six numbers with z)", std::move(where));
-  }
-  if (box.min_x > box.max_x || box.min_y > box.max_y || (box.min_z && *box.min_z > *box.max_z)) {
-    return error(Code::kInvalidValue, "a minimum of the box lies above its maximum", std::move(where));
-  }
+  if (n.size() == 4) return Bbox{n[0], n[1], n[2], n[3], std::nullopt, std::nullopt};
+  if (n.size() == 6) return Bbox{n[0], n[1], n[3], n[4], n[2], n[5]};
+  return error(Code::kMalformed, "a box is minx,miny,maxx,maxy (or six numbers with z)", where);
+}
+
+Result<void> check_order(const Bbox& box, const std::string& where) {
+  if (box.min_x <= box.max_x && box.min_y <= box.max_y && (!box.min_z || *box.min_z <= *box.max_z)) return {};
+  return error(Code::kInvalidValue, "a minimum of the box lies above its maximum", where);
+}
+
+}  // namespace
+
+Result<Bbox> parse_bbox(std::string_view text, std::string where) {
+  const auto box = parse_any_box(text, where);
+  if (!box) return box;
+  if (auto fine = check_order(*box, where); !fine) return fine.error();
   return box;
+}
+
+Result<std::vector<Bbox>> parse_lon_lat_bbox(std::string_view text, std::string where) {
+  const auto box = parse_any_box(text, where);
+  if (!box) return box.error();
+  std::vector<Bbox> boxes{*box};
+  if (box->min_x > box->max_x && box->min_x <= 180 && box->max_x >= -180) {
+    boxes = {*box, *box};
+    boxes[0].max_x = 180;
+    boxes[1].min_x = -180;
+  }
+  for (const Bbox& part : boxes) {
+    if (auto fine = check_order(part, where); !fine) return fine.error();
+  }
+  return boxes;
 }
 
 }  // namespace proto

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tin/base/result.h"
 
@@ -26,5 +27,9 @@ struct Bbox {
 /// "minx,miny,maxx,maxy" or "minx,miny,minz,maxx,maxy,maxz"; a box may be a point.
 /// Errors: kMalformed, kNotFinite, kInvalidValue (a minimum above its maximum).
 tin::base::Result<Bbox> parse_bbox(std::string_view text, std::string where);
+
+/// The same for longitudes and latitudes, where a box whose first longitude is the larger one goes over the antimeridian:
+/// then it is two boxes.
+tin::base::Result<std::vector<Bbox>> parse_lon_lat_bbox(std::string_view text, std::string where);
 
 }  // namespace proto

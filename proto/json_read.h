@@ -119,6 +119,7 @@ class Object {
 class Value {
  public:
   bool is_array() const { return node().kind == Document::Kind::kArray; }
+  bool is_null() const { return node().kind == Document::Kind::kNull; }
   tin::base::Result<bool> boolean() const;
   /// A finite number.
   tin::base::Result<double> number() const;

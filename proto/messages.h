@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "tin/base/result.h"
+#include "tin/query/elevation.h"
 #include "tin/terrain/edit.h"
 
 namespace proto {
@@ -48,6 +49,9 @@ tin::base::Result<tin::terrain::Duplicates> parse_duplicates(std::string_view te
 enum class Voids { kKeep, kFill };
 /// "keep" or "fill". Errors: kInvalidValue.
 tin::base::Result<Voids> parse_voids(std::string_view text, std::string where);
+
+/// "linear" or "natural-neighbour". Errors: kInvalidValue.
+tin::base::Result<tin::query::Interpolation> parse_interpolation(std::string_view text, std::string where);
 
 /// POST /tins with application/json.
 struct CreateTin {
@@ -97,6 +101,7 @@ struct ElevationRequest {
   std::vector<Position2> positions;
   std::optional<std::string> crs;
   Voids voids = Voids::kKeep;
+  tin::query::Interpolation interpolation = tin::query::Interpolation::kLinear;
 };
 tin::base::Result<ElevationRequest> read_elevation_request(std::string_view body, std::size_t max_positions);
 
@@ -170,6 +175,7 @@ struct CollectionDocument {
   std::optional<std::array<double, 4>> bbox;  // CRS84
   std::vector<std::string> crs;               // URIs
   std::string storage_crs;                    // URI; left out when empty
+  bool features = true;                       // has items; else it is a coverage
   std::vector<Link> links;
 };
 std::string collection_json(const CollectionDocument& collection);

@@ -255,6 +255,12 @@ Result<Voids> parse_voids(std::string_view text, std::string where) {
   return error(Code::kInvalidValue, "voids is keep or fill", std::move(where));
 }
 
+Result<tin::query::Interpolation> parse_interpolation(std::string_view text, std::string where) {
+  if (text == "linear") return tin::query::Interpolation::kLinear;
+  if (text == "natural-neighbour") return tin::query::Interpolation::kNaturalNeighbour;
+  return error(Code::kInvalidValue, "The interpolations are linear and natural-neighbour.", std::move(where));
+}
+
 Result<CreateTin> read_create_tin(std::string_view body, std::size_t max_vertices) {
   auto document = Document::parse(body);
   if (!document) return std::move(document).error();
@@ -308,7 +314,7 @@ Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops
 Result<ElevationRequest> read_elevation_request(std::string_view body, std::size_t max_positions) {
   auto document = Document::parse(body);
   if (!document) return std::move(document).error();
-  auto object = document->root().object({"positions", "crs", "voids"});
+  auto object = document->root().object({"positions", "crs", "voids", "interpolation"});
   if (!object) return std::move(object).error();
   ElevationRequest request;
   auto crs = read_crs(*object);
@@ -320,6 +326,13 @@ Result<ElevationRequest> read_elevation_request(std::string_view body, std::size
     auto voids = parse_voids(*text, member->pointer());
     if (!voids) return std::move(voids).error();
     request.voids = *voids;
+  }
+  if (const auto member = object->find("interpolation")) {
+    auto text = member->string(kMaxWord);
+    if (!text) return std::move(text).error();
+    auto by = parse_interpolation(*text, member->pointer());
+    if (!by) return std::move(by).error();
+    request.interpolation = *by;
   }
   auto member = object->require("positions");
   if (!member) return std::move(member).error();

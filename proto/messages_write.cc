@@ -81,7 +81,7 @@ void write_collection(JsonWriter& json, const CollectionDocument& collection) {
     json.key("crs").string("http://www.opengis.net/def/crs/OGC/1.3/CRS84");
     json.end_object().end_object();
   }
-  json.key("itemType").string("feature");
+  if (collection.features) json.key("itemType").string("feature");
   json.key("crs");
   write_strings(json, collection.crs);
   write_if_any(json, "storageCrs", collection.storage_crs);

@@ -40,6 +40,9 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/tins", {&limits.tins, 1, kMillion}},
           {"/limits/edits_per_request", {&limits.edits_per_request, 1, 10 * kMillion}},
           {"/limits/positions_per_request", {&limits.positions_per_request, 1, 100 * kMillion}},
+          {"/limits/polygon_positions", {&limits.polygon_positions, 3, kMillion}},
+          {"/limits/contour_levels", {&limits.contour_levels, 1, kMillion}},
+          {"/limits/answer_positions", {&limits.answer_positions, 1, 100 * kMillion}},
           {"/limits/uploads_at_once", {&limits.uploads_at_once, 1, 1000}},
           {"/limits/exports_at_once", {&limits.exports_at_once, 1, 1000}},
           {"/limits/export_seconds", {&limits.export_seconds, 1, kMillion}},
@@ -135,6 +138,16 @@ Result<void> set_data_dir(Config& config, const json& value) {
   return {};
 }
 
+Result<void> set_public_url(Config& config, const json& value) {
+  const std::string url = value.is_string() ? value.get<std::string>() : "?";
+  const bool web = url.starts_with("http://") || url.starts_with("https://");
+  if (!url.empty() && (!web || url.ends_with('/') || url.find_first_of(" \"<>?#\\") != std::string::npos)) {
+    return invalid("/public_url", "\"\" or a URL like \"https://terrain.example.org\", without a slash at the end");
+  }
+  config.public_url = url;
+  return {};
+}
+
 Result<void> set_log_level(Config& config, const json& value) {
   for (const char* level : {"debug", "info", "warning", "error", "off"}) {
     if (value != level) continue;
@@ -147,6 +160,7 @@ Result<void> set_log_level(Config& config, const json& value) {
 Result<void> set_key(Config& config, const std::string& key, const json& value) {
   if (key == "listen") return set_listen(config, value);
   if (key == "data_dir") return set_data_dir(config, value);
+  if (key == "public_url") return set_public_url(config, value);
   if (key == "log_level") return set_log_level(config, value);
   if (key == "limits") return set_section(numbers_of(config.limits), value, "/limits");
   if (key == "jobs") return set_section(numbers_of(config.jobs), value, "/jobs");

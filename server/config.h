@@ -30,6 +30,9 @@ struct LimitConfig {
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;
   std::int64_t positions_per_request = 1'000'000;
+  std::int64_t polygon_positions = 5000;       // of a polygon that is asked about
+  std::int64_t contour_levels = 10'000;        // per request
+  std::int64_t answer_positions = 1'000'000;   // of a profile, and of contours that a process returns
   std::int64_t uploads_at_once = 2;     // files being read beside the jobs
   std::int64_t exports_at_once = 2;     // rasters being made
   std::int64_t export_seconds = 120;    // for making one
@@ -81,6 +84,9 @@ struct HttpConfig {
 struct Config {
   Listen listen;
   std::filesystem::path data_dir = "data";
+  /// What clients call this server, such as "https://terrain.example.org"; empty: what their Host field says. No slash at
+  /// the end.
+  std::string public_url;
   std::string log_level = "info";  // debug, info, warning, error or off
   LimitConfig limits;
   JobConfig jobs;

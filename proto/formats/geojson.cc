@@ -37,8 +37,20 @@ std::string triangle_id(const std::array<VertexId, 3>& ids) {
   return id;
 }
 
-GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates)
-    : out_(out), decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals) {}
+std::string feature_with_links(std::string_view feature, std::span<const Link> links) {
+  const std::size_t begin = feature.find('{');
+  std::string out(feature.substr(begin, feature.rfind('}') - begin));
+  JsonWriter json;
+  json.begin_object();
+  write_links(json, links);
+  json.end_object();
+  return out + "," + json.take().substr(1);
+}
+
+GeoJsonWriter::GeoJsonWriter(std::string& out, Coordinates coordinates, bool continued)
+    : out_(out),
+      decimals_(coordinates == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals),
+      first_(!continued) {}
 
 void GeoJsonWriter::begin(const CollectionHead& head) {
   JsonWriter json;
@@ -80,6 +92,36 @@ void GeoJsonWriter::triangle(const std::array<VertexId, 3>& ids, const std::arra
   out_ += R"(]]},"properties":{"vertices":[)";
   append_ids(out_, ordered, ',');
   out_ += "]}}";
+}
+
+void GeoJsonWriter::edge(const std::array<VertexId, 2>& ids, const std::array<Position, 2>& ends, bool hull) {
+  separate();
+  out_ += R"({"type":"Feature","id":")";
+  append_integer(out_, ids[0].value());
+  out_ += '-';
+  append_integer(out_, ids[1].value());
+  out_ += R"(","geometry":{"type":"LineString","coordinates":[)";
+  append_position(ends[0]);
+  out_ += ',';
+  append_position(ends[1]);
+  out_ += R"(]},"properties":{"vertices":[)";
+  append_integer(out_, ids[0].value());
+  out_ += ',';
+  append_integer(out_, ids[1].value());
+  out_ += R"(],"hull":)";
+  out_ += hull ? "true}}" : "false}}";
+}
+
+void GeoJsonWriter::contour(double z, bool closed, std::span<const Position2> at) {
+  separate();
+  out_ += R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[)";
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) out_ += ',';
+    append_position({at[i].x, at[i].y, z});
+  }
+  out_ += R"(]},"properties":{"elevation":)";
+  append_shortest(out_, z);
+  out_ += closed ? R"(,"closed":true}})" : R"(,"closed":false}})";
 }
 
 void GeoJsonWriter::end() {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,7 +36,8 @@ struct CollectionHead {
 /// Appends to a string that the caller may empty between any two calls.
 class GeoJsonWriter {
  public:
-  GeoJsonWriter(std::string& out, Coordinates coordinates);
+  /// `continued`: features were written already, by another writer.
+  GeoJsonWriter(std::string& out, Coordinates coordinates, bool continued = false);
 
   void begin(const CollectionHead& head);
   /// A Point with the vertex's id as its id. Requires: finite coordinates.
@@ -43,6 +45,10 @@ class GeoJsonWriter {
   /// A Polygon of four positions whose id is "a-b-c". Requires: counter-clockwise, ids[i] stands at
   /// corners[i]. Ensures: the same bytes whichever corner comes first: the smallest id begins.
   void triangle(const std::array<VertexId, 3>& ids, const std::array<Position, 3>& corners);
+  /// A LineString of two positions whose id is "a-b". `hull`: nothing lies on one of its sides.
+  void edge(const std::array<VertexId, 2>& ids, const std::array<Position, 2>& ends, bool hull);
+  /// A LineString of `z` with the properties "elevation" and "closed". Requires: two positions or more, finite.
+  void contour(double z, bool closed, std::span<const Position2> at);
   void end();
 
  private:
@@ -51,10 +57,13 @@ class GeoJsonWriter {
 
   std::string& out_;
   int decimals_;
-  bool first_ = true;
+  bool first_;
 };
 
 /// The id that triangle() writes.
 std::string triangle_id(const std::array<VertexId, 3>& ids);
+
+/// A feature as the writer appended it, with links.
+std::string feature_with_links(std::string_view feature, std::span<const Link> links);
 
 }  // namespace proto::formats

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "proto/json_write.h"
 #include "proto/messages.h"
 #include "proto/processes/process.h"
 
@@ -12,27 +14,65 @@ namespace proto {
 
 const ProcessDescription& simplify_description();
 
+/// How much time goes into fewer vertices.
+enum class SimplifyEffort { kFast, kBalanced, kThorough, kBest };
+/// "fast", "balanced", "thorough" or "best". Errors: kInvalidValue.
+tin::base::Result<SimplifyEffort> parse_effort(std::string_view text, std::string where);
+
+/// Which vertices stay.
+struct SimplifyProtect {
+  using Ring = std::vector<Position2>;  // closed or not
+  using Polygon = std::vector<Ring>;    // outer ring, holes
+  struct Id {
+    VertexId id;
+    std::string where;  // its pointer
+  };
+  bool border = false;  // those on the outline
+  std::vector<Id> ids;
+  std::vector<Polygon> polygons;  // in the TIN's CRS: those inside
+};
+
 /// At least one of tolerance and max_vertices is there.
 struct SimplifyInputs {
   std::string tin;
   std::optional<double> tolerance;            // >= 0, in the TIN's vertical unit
   std::optional<std::uint64_t> max_vertices;  // >= 3
+  SimplifyEffort effort = SimplifyEffort::kBalanced;
+  std::optional<double> max_seconds;  // 0.001 to 86400
+  std::uint64_t seed = 1;
+  SimplifyProtect protect;
   std::optional<std::string> as;  // id of the TIN to make; without it the TIN itself is simplified
 };
 tin::base::Result<SimplifyInputs> read_simplify_inputs(const Value& inputs);
 
+/// The sample that is furthest from the result.
+struct SimplifyWorst {
+  double x = 0, y = 0;  // in the TIN's CRS
+  double z = 0;         // its own height
+  double error = 0;
+  std::optional<std::uint64_t> column, row;  // of a source raster
+  std::optional<std::uint64_t> index;        // of source points, by position from 0
+};
+
 struct SimplifyResults {
   std::uint64_t vertices_before = 0;
   std::uint64_t vertices_after = 0;
-  double max_error = 0;                   // in the TIN's vertical unit, over every source sample
-  std::optional<Position2> max_error_at;  // null when every sample lies on the result
+  double max_error = 0;                // in the TIN's vertical unit, over every sample
+  std::optional<SimplifyWorst> worst;  // null when every sample lies on the result
   bool tolerance_met = true;              // false only when max_vertices got in its way
   bool edited_meanwhile = false;          // edits landed while it worked; the report is about what it saw
   double rmse = 0;
+  bool against_source = false;      // else against the vertices that there were
+  std::uint64_t samples = 0;        // that it was certified against
+  std::uint64_t out_of_force = 0;   // samples of the source that edits put out of force
+  double histogram_bin = 0;         // width; the last bin holds all above as well
+  std::vector<std::uint64_t> histogram;
   double seconds = 0;
   std::string tin;
   std::uint64_t revision = 0;
 };
+/// The members that say how good the result is, those of an object that is open already.
+void write_simplify_report(JsonWriter& json, const SimplifyResults& results);
 std::string simplify_results_json(const SimplifyResults& results);
 
 }  // namespace proto

@@ -48,6 +48,10 @@ Response problem_answer(const tin::base::Error& problem) {
   return problem_response(proto::to_problem(problem));
 }
 
+Response status_answer(int status, const std::string& detail) {
+  return problem_response(proto::status_problem(status, detail));
+}
+
 http::ErrorPages error_pages() {
   return {[](const tin::base::Error& problem) { return problem_answer(problem); },
           [](int status, const std::string& detail) {

@@ -24,6 +24,9 @@ inline constexpr std::string_view kJson = "application/json";
 Response json_answer(std::string body, int status = 200);
 Response problem_answer(const tin::base::Error& error);
 
+/// A problem that no error code stands for, such as 428.
+Response status_answer(int status, const std::string& detail);
+
 /// The pages that the HTTP server uses for its own errors.
 http::ErrorPages error_pages();
 

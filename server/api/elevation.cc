@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "proto/bbox.h"
 #include "proto/crs_uri.h"
 #include "server/api/answer.h"
 #include "server/api/positions.h"
 #include "server/api/routes.h"
+#include "server/api/surface_work.h"
 
 namespace server::api {
 
@@ -18,21 +18,11 @@ using tin::terrain::Terrain;
 
 namespace {
 
-tin::query::Voids engine_voids(proto::Voids voids) {
-  return voids == proto::Voids::kFill ? tin::query::Voids::kFill : tin::query::Voids::kKeep;
-}
-
 /// The elevation at a position of the TIN's CRS, snapped to the lattice; nothing beyond the lattice either.
 std::optional<tin::query::Elevation> elevation_at(const Terrain& terrain, ElevationQuery& query, double x,
                                                   double y) {
   const auto at = terrain.frame().to_lattice(x, y);
   return at ? query.at(*at) : std::nullopt;
-}
-
-Result<double> required_number(const Request& request, const std::string& name) {
-  const auto text = request.query_value(name);
-  if (!text) return error(Code::kMalformed, "The parameter " + name + " is missing.", "query:" + name);
-  return proto::parse_number(*text, "query:" + name);
 }
 
 Result<Response> one(Context& context, const Request& request) {
@@ -43,6 +33,8 @@ Result<Response> one(Context& context, const Request& request) {
   if (!y) return y.error();
   const auto voids = proto::parse_voids(request.query_value("voids").value_or("keep"), "query:voids");
   if (!voids) return voids.error();
+  const auto by = proto::parse_interpolation(request.query_value("interpolation").value_or("linear"), "query:interpolation");
+  if (!by) return by.error();
   const std::string own_crs =
       (*tin)->read([](const Terrain& terrain, std::uint64_t) { return terrain.frame().crs; });
   std::string asked_crs = own_crs;
@@ -55,7 +47,7 @@ Result<Response> one(Context& context, const Request& request) {
   if (!positions) return positions.error();
   const auto own = positions->convert(proto::Position2{*x, *y});
   const auto answer = (*tin)->read([&](const Terrain& terrain, std::uint64_t revision) {
-    ElevationQuery query(terrain, engine_voids(*voids));
+    ElevationQuery query(terrain, engine_voids(*voids), *by);
     const auto found = own ? elevation_at(terrain, query, own->x, own->y) : std::nullopt;
     proto::ElevationAnswer out;
     out.revision = revision;
@@ -88,7 +80,7 @@ Result<Response> many(Context& context, const Request& request) {
   }
   std::vector<std::uint8_t> ok;
   positions->convert(x, y, ok);
-  ElevationQuery query(*version.terrain, engine_voids(message->voids));
+  ElevationQuery query(*version.terrain, engine_voids(message->voids), message->interpolation);
   std::vector<std::optional<double>> z(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (ok[i] == 0) continue;
@@ -106,7 +98,7 @@ void add_elevation(http::Router& router, Context& context) {
   const std::string pattern = "/tins/{tin}/elevation";
   router.add({.method = Method::kGet,
               .pattern = pattern,
-              .query = {"x", "y", "crs", "voids"},
+              .query = {"x", "y", "crs", "voids", "interpolation"},
               .handler = guarded([&context](Request& request) { return one(context, request); })});
   router.add({.method = Method::kPost,
               .pattern = pattern,

@@ -8,6 +8,7 @@
 #include "server/api/export_grid.h"
 #include "server/api/feature_reader.h"
 #include "server/api/routes.h"
+#include "server/api/surface_work.h"
 #include "server/gdal/geotiff.h"
 
 namespace server::api {
@@ -145,8 +146,49 @@ Result<void> check_format_parameters(const Request& request, std::string_view fo
                  "query:" + std::string(name));
   };
   if (format == "geotiff") return misplaced("collection");
-  if (auto fine = misplaced("cell-size"); !fine) return fine;
-  return misplaced("voids");
+  for (const std::string_view name : {"cell-size", "voids", "layer", "interpolation", "azimuth", "altitude", "exaggeration"}) {
+    if (auto fine = misplaced(name); !fine) return fine;
+  }
+  return {};
+}
+
+Result<tin::query::RasterLayer> parse_layer(std::string_view text) {
+  using tin::query::RasterLayer;
+  if (text == "elevation") return RasterLayer::kElevation;
+  if (text == "slope") return RasterLayer::kSlope;
+  if (text == "aspect") return RasterLayer::kAspect;
+  if (text == "hillshade") return RasterLayer::kHillshade;
+  return error(Code::kInvalidValue, "The layers are elevation, slope, aspect and hillshade.", "query:layer");
+}
+
+/// What the raster shows, and how. What would have no effect on the layer is an error.
+Result<void> read_layer(const Request& request, ExportRequest& wanted) {
+  using tin::query::RasterLayer;
+  const auto layer = parse_layer(request.query_value("layer").value_or("elevation"));
+  if (!layer) return layer.error();
+  wanted.layer = *layer;
+  const auto only_for = [&](std::string_view name, RasterLayer with, std::string_view word) -> Result<void> {
+    if (wanted.layer == with || !request.query_value(name)) return {};
+    return error(Code::kInvalidValue, "The parameter " + std::string(name) + " goes with layer=" + std::string(word) + " only.",
+                 "query:" + std::string(name));
+  };
+  if (auto fine = only_for("interpolation", RasterLayer::kElevation, "elevation"); !fine) return fine;
+  const auto by =
+      proto::parse_interpolation(request.query_value("interpolation").value_or("linear"), "query:interpolation");
+  if (!by) return by.error();
+  wanted.interpolation = *by;
+  double* const numbers[] = {&wanted.sun.azimuth_degrees, &wanted.sun.altitude_degrees, &wanted.sun.exaggeration};
+  const char* const names[] = {"azimuth", "altitude", "exaggeration"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (auto fine = only_for(names[i], RasterLayer::kHillshade, "hillshade"); !fine) return fine;
+    const auto number = number_or(request, names[i], *numbers[i]);
+    if (!number) return number.error();
+    *numbers[i] = *number;
+  }
+  if (wanted.sun.altitude_degrees < 0 || wanted.sun.altitude_degrees > 90) {
+    return error(Code::kInvalidValue, "The sun's altitude is 0 to 90 degrees.", "query:altitude");
+  }
+  return {};
 }
 
 Result<ExportRequest> read_export_request(const Context& context, const Request& request) {
@@ -171,7 +213,8 @@ Result<ExportRequest> read_export_request(const Context& context, const Request&
   }
   const auto voids = proto::parse_voids(request.query_value("voids").value_or("keep"), "query:voids");
   if (!voids) return voids.error();
-  wanted.voids = *voids == proto::Voids::kFill ? tin::query::Voids::kFill : tin::query::Voids::kKeep;
+  wanted.voids = engine_voids(*voids);
+  if (auto read = read_layer(request, wanted); !read) return read.error();
   return wanted;
 }
 
@@ -202,7 +245,7 @@ Result<Response> export_tin(Context& context, const Request& request) {
 void add_export(http::Router& router, Context& context) {
   router.add({.method = http::Method::kGet,
               .pattern = "/tins/{tin}/export",
-              .query = {"f", "collection", "crs", "bbox", "cell-size", "voids"},
+              .query = {"f", "collection", "crs", "bbox", "cell-size", "voids", "layer", "interpolation", "azimuth", "altitude", "exaggeration"},
               .handler = guarded([&context](Request& request) { return export_tin(context, request); })});
 }
 

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "server/api/surface_work.h"
+
 namespace server::api {
 
 using tin::base::Code;
 using tin::base::error;
 using tin::base::Result;
 using tin::frame::Extent;
+using tin::query::RasterLayer;
 using tin::terrain::SourceGrid;
 using tin::terrain::Terrain;
 
@@ -74,7 +77,9 @@ Result<Extent> extent_in(const Terrain& terrain, Positions& positions) {
 Result<ExportGrid> ExportGrid::plan(const Terrain& terrain, const ExportRequest& request) {
   const std::string& own = terrain.frame().crs;
   const std::string crs = request.crs.empty() ? own : request.crs;
-  ExportGrid grid(terrain, request.voids);
+  auto ground = ground_of(terrain);
+  if (!ground) return ground.error();
+  ExportGrid grid(terrain, request, std::make_unique<tin::frame::Ground>(*ground));
   grid.spec_.crs = crs;
   grid.spec_.vertical_unit = terrain.frame().vertical_unit;
   if (terrain.vertex_count() == 0) return error(Code::kInvalidValue, "The TIN is empty.");
@@ -86,6 +91,8 @@ Result<ExportGrid> ExportGrid::plan(const Terrain& terrain, const ExportRequest&
   auto laid = same ? grid.take_source_grid(*source, request) : grid.lay_new_grid(request, crs);
   if (!laid) return laid.error();
   grid.choose_values();
+  const bool along_lattice = grid.source_ != nullptr || grid.to_own_->identity();
+  if (along_lattice && request.interpolation == tin::query::Interpolation::kLinear) grid.scan();
   return grid;
 }
 
@@ -159,8 +166,15 @@ Result<void> ExportGrid::lay_new_grid(const ExportRequest& request, const std::s
   return {};
 }
 
-/// Data type and nodata: the source's own where they can be, so that a round trip changes neither.
 void ExportGrid::choose_values() {
+  if (request_.layer == RasterLayer::kElevation) return choose_elevation_values();
+  spec_.data_type = "Float32";
+  spec_.nodata = -9999;
+  spec_.vertical_unit = request_.layer == RasterLayer::kHillshade ? "" : "degree";
+}
+
+/// Data type and nodata: the source's own where they can be, so that a round trip changes neither.
+void ExportGrid::choose_elevation_values() {
   const auto* source = terrain_->source_grid();
   const bool wide = source != nullptr && (source->data_type == "Float64" || source->data_type == "Int32" ||
                                           source->data_type == "UInt32");
@@ -174,15 +188,45 @@ void ExportGrid::choose_values() {
   if (source != nullptr && source->nodata && free(*source->nodata)) spec_.nodata = *source->nodata;
 }
 
-void ExportGrid::sample_row(std::int64_t row, std::span<double> values) {
-  const auto z_or_nodata = [this](const std::optional<tin::query::Elevation>& found) {
-    return found ? found->z : spec_.nodata;
+/// Pixels whose rows and columns run along the lattice's axes: each at the nearest lattice point, as a query there.
+void ExportGrid::scan() {
+  constexpr std::int32_t kBeyond = std::int32_t{1} << 30;
+  const auto on_lattice = [](double at) {
+    return static_cast<std::int32_t>(std::llround(std::clamp(at, -double(kBeyond), double(kBeyond))));
   };
+  const auto& gt = spec_.geotransform;
+  const auto& frame = terrain_->frame();
+  tin::query::PixelCentres centres;
+  for (std::int64_t c = 0; c < spec_.width; ++c) {
+    const auto column = static_cast<std::int32_t>(first_column_ + c);
+    centres.x.push_back(source_ != nullptr ? source_->centre(column, 0).x
+                                           : on_lattice(frame.x.lattice(gt[0] + (static_cast<double>(c) + 0.5) * gt[1])));
+  }
+  for (std::int64_t r = 0; r < spec_.height; ++r) {
+    const auto row = static_cast<std::int32_t>(first_row_ + r);
+    centres.y.push_back(source_ != nullptr ? source_->centre(0, row).y
+                                           : on_lattice(frame.y.lattice(gt[3] + (static_cast<double>(r) + 0.5) * gt[5])));
+  }
+  const tin::query::RasterOptions options{request_.layer, request_.voids, request_.sun, ground_.get()};
+  raster_ = std::make_unique<tin::query::Rasteriser>(*terrain_, std::move(centres), options, spec_.nodata);
+}
+
+std::optional<double> ExportGrid::value_at(tin::exact::Point p) {
+  if (request_.layer == RasterLayer::kElevation) {
+    const auto found = query_.at(p);
+    return found ? std::optional(found->z) : std::nullopt;
+  }
+  const auto found = gradient_.at(p);
+  if (!found) return std::nullopt;
+  return tin::query::layer_value(request_.layer, *found, shade_);
+}
+
+void ExportGrid::sample_row(std::int64_t row, std::span<double> values) {
+  if (raster_) return raster_->row(static_cast<std::size_t>(row), values);
   if (source_ != nullptr) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto column = static_cast<std::int32_t>(first_column_ + static_cast<std::int64_t>(i));
-      values[i] =
-          z_or_nodata(query_.at(source_->centre(column, static_cast<std::int32_t>(first_row_ + row))));
+      values[i] = value_at(source_->centre(column, static_cast<std::int32_t>(first_row_ + row))).value_or(spec_.nodata);
     }
     return;
   }
@@ -195,7 +239,7 @@ void ExportGrid::sample_row(std::int64_t row, std::span<double> values) {
     values[i] = spec_.nodata;
     if (ok_[i] == 0) continue;
     const auto at = terrain_->frame().to_lattice(x_[i], y_[i]);
-    if (at) values[i] = z_or_nodata(query_.at(*at));
+    if (at) values[i] = value_at(*at).value_or(spec_.nodata);
   }
 }
 

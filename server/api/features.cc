@@ -1,203 +1,213 @@
-// Collections of a TIN and their items, page by page.
+// The items of a TIN's collections, page by page and one by one (OGC API Features, Parts 1 and 2).
 #include <algorithm>
-#include <charconv>
 
-#include "proto/crs_uri.h"
-#include "server/api/answer.h"
-#include "server/api/feature_reader.h"
+#include "server/api/feature_query.h"
+#include "server/api/feature_tag.h"
+#include "server/api/links.h"
 #include "server/api/routes.h"
 
 namespace server::api {
 
+using proto::formats::Coordinates;
+using proto::formats::GeoJsonWriter;
 using tin::base::Code;
 using tin::base::error;
 using tin::terrain::Terrain;
 
 namespace {
 
-/// What a `next` token says: a revision, and where to go on in it.
-struct PageToken {
-  std::uint64_t revision = 0;
-  FeatureCursor cursor;
+const std::string kGeoJson(proto::formats::kGeoJsonMediaType);
+
+/// How a request wants its features, in one revision.
+struct Wanted {
+  FeatureQuery query;
+  WireCrs crs;
+  std::string bbox_crs;  // as read_crs() takes it
 };
 
-std::string write_token(const PageToken& token) {
-  return std::to_string(token.revision) + "." + std::to_string(token.cursor.vertex) + "." +
-         std::to_string(token.cursor.done);
+Coordinates decimals_of(const WireCrs& crs) {
+  return crs.geographic ? Coordinates::kDegrees : Coordinates::kProjected;
 }
 
-Result<PageToken> read_token(const std::string& text) {
-  PageToken token;
-  const char* end = text.data() + text.size();
-  const auto revision = std::from_chars(text.data(), end, token.revision);
-  if (revision.ec == std::errc{} && revision.ptr != end && *revision.ptr == '.') {
-    const auto vertex = std::from_chars(revision.ptr + 1, end, token.cursor.vertex);
-    if (vertex.ec == std::errc{} && vertex.ptr != end && *vertex.ptr == '.') {
-      const auto done = std::from_chars(vertex.ptr + 1, end, token.cursor.done);
-      if (done.ec == std::errc{} && done.ptr == end) return token;
+/// The CRS of the answer has its authority's order of coordinates.
+Feature in_wire_order(Feature feature, const WireCrs& crs) {
+  if (!crs.northing_first) return feature;
+  for (proto::Position& corner : feature.corners) std::swap(corner.x, corner.y);
+  return feature;
+}
+
+Result<Wanted> read_wanted(const Context& context, const Request& request, const tin::frame::Frame& frame) {
+  auto query = read_feature_query(context.config.limits, request);
+  if (!query) return query.error();
+  auto crs = wire_crs(frame, request.query_value("crs"), "query:crs");
+  if (!crs) return crs.error();
+  const auto bbox_crs = wire_crs(frame, request.query_value("bbox-crs"), "query:bbox-crs");
+  if (!bbox_crs) return bbox_crs.error();
+  auto boxes = read_boxes(request, *bbox_crs);
+  if (!boxes) return boxes.error();
+  query->boxes = std::move(*boxes);
+  return Wanted{std::move(*query), std::move(*crs), bbox_crs->name};
+}
+
+Result<void> restrict_to_boxes(FeatureReader& reader, const Terrain& terrain, const Wanted& wanted) {
+  if (wanted.query.boxes.empty()) return {};
+  const std::string& own = terrain.frame().crs;
+  auto to_box = Positions::between(own, wanted.bbox_crs, "query:bbox-crs");
+  if (!to_box) return to_box.error();
+  auto from_box = Positions::between(wanted.bbox_crs, own, "query:bbox-crs");
+  if (!from_box) return from_box.error();
+  reader.within(wanted.query.boxes, std::move(*to_box), std::move(*from_box));
+  return {};
+}
+
+/// How many features the whole of the pages has: known from the first page on.
+Result<std::uint64_t> count_matched(const Terrain& terrain, const Wanted& wanted) {
+  if (wanted.query.boxes.empty()) return feature_count(terrain, wanted.query.kind);
+  if (wanted.query.token) return wanted.query.token->matched;
+  FeatureReader reader(terrain, wanted.query.kind, {}, Positions(), std::nullopt);
+  if (auto restricted = restrict_to_boxes(reader, terrain, wanted); !restricted) return restricted.error();
+  std::uint64_t count = 0;
+  while (reader.next()) ++count;
+  return count;
+}
+
+std::string encoded(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                       std::string_view("-._~,:/").find(c) != std::string_view::npos;
+    if (plain) {
+      out += c;
+    } else {
+      constexpr char kDigits[] = "0123456789ABCDEF";
+      out.append({'%', kDigits[byte >> 4], kDigits[byte & 15]});
     }
   }
-  return error(Code::kMalformed, "This is no token that a page gave.", "query:next");
+  return out;
 }
 
-struct PageRequest {
-  FeatureKind kind = FeatureKind::kVertices;
-  std::string path;  // of the items, for links
-  std::string bbox_text;
-  std::optional<proto::Bbox> box;
-  std::size_t limit = 0;
-  std::optional<PageToken> token;
-};
-
-struct Page {
-  std::uint64_t revision = 0;
-  std::string body;
-  bool has_next = false;
-};
-
-Result<PageRequest> read_page_request(const Context& context, const Request& request) {
-  PageRequest page;
-  const auto kind = feature_kind(request.path_parameter("collection"));
-  if (!kind) return error(Code::kNotFound, "The collections are vertices and triangles.");
-  page.kind = *kind;
-  page.path = request.path;
-  const auto& limits = context.config.limits;
-  page.limit = static_cast<std::size_t>(limits.page_size);
-  if (const auto text = request.query_value("limit")) {
-    const auto limit = proto::parse_count(*text, 1, UINT32_MAX, "query:limit");
-    if (!limit) return limit.error();
-    page.limit = static_cast<std::size_t>(
-        std::min<std::uint64_t>(*limit, static_cast<std::uint64_t>(limits.page_size_max)));
+/// The request's own target with another place to go on.
+std::string page_href(const Request& request, const Wanted& wanted, const std::optional<PageToken>& token) {
+  std::string href = request.path + "?limit=" + std::to_string(wanted.query.limit);
+  for (const char* name : {"bbox", "bbox-crs", "crs", "datetime"}) {
+    if (const auto value = request.query_value(name)) href.append("&").append(name).append("=").append(encoded(*value));
   }
-  if (const auto text = request.query_value("bbox")) {
-    const auto box = proto::parse_bbox(*text, "query:bbox");
-    if (!box) return box.error();
-    page.box = *box;
-    page.bbox_text = *text;
-  }
-  if (const auto text = request.query_value("next")) {
-    const auto token = read_token(*text);
-    if (!token) return token.error();
-    page.token = *token;
-  }
-  return page;
-}
-
-std::string page_href(const PageRequest& page, const std::optional<PageToken>& token) {
-  std::string href = page.path + "?limit=" + std::to_string(page.limit);
-  if (!page.bbox_text.empty()) href += "&bbox=";
-  for (const char c : page.bbox_text)
-    href += c == '+' ? "%2B" : std::string(1, c);  // "1e+5": a bare plus would be a space
   if (token) href += "&next=" + write_token(*token);
   return href;
 }
 
-Result<Page> build_page(const PageRequest& request, const Terrain& terrain, std::uint64_t revision) {
-  auto positions = Positions::to_geojson(terrain.frame());
-  if (!positions) return positions.error();
-  const FeatureCursor from = request.token ? request.token->cursor : FeatureCursor{};
-  FeatureReader reader(terrain, request.kind, from, std::move(*positions), request.box);
+struct Page {
+  std::string body;
+  std::vector<proto::Link> links;
   std::vector<Feature> features;
+  bool has_next = false;
+};
+
+Result<Page> build_page(const Context& context, const Request& request, const Wanted& wanted, const app::Version& version) {
+  const Terrain& terrain = *version.terrain;
+  const FeatureQuery& query = wanted.query;
+  auto positions = Positions::between(terrain.frame().crs, wanted.crs.name, "query:crs");
+  if (!positions) return positions.error();
+  const auto matched = count_matched(terrain, wanted);
+  if (!matched) return matched.error();
+  FeatureReader reader(terrain, query.kind, query.token ? query.token->cursor : FeatureCursor{}, std::move(*positions),
+                       std::nullopt);
+  if (auto restricted = restrict_to_boxes(reader, terrain, wanted); !restricted) return restricted.error();
+  Page page;
   std::optional<Feature> feature = reader.next();
-  for (; feature && features.size() < request.limit; feature = reader.next()) features.push_back(*feature);
-  proto::formats::CollectionHead head;
-  head.number_returned = features.size();
-  if (!request.box) {
-    head.number_matched =
-        request.kind == FeatureKind::kVertices ? terrain.vertex_count() : terrain.triangle_count();
+  for (; feature && page.features.size() < query.limit; feature = reader.next()) page.features.push_back(*feature);
+  page.has_next = feature.has_value();
+  const std::string collection = request.path.substr(0, request.path.rfind('/'));
+  page.links = {{page_href(request, wanted, query.token), "self", kGeoJson, ""},
+                {page_href(request, wanted, query.token), "alternate", "text/html", "As a page"},
+                {collection, "collection", std::string(kJson), "The collection"}};
+  if (feature) {
+    const PageToken token{version.revision, feature->at, *matched};
+    page.links.push_back({page_href(request, wanted, token), "next", kGeoJson, "The next page"});
   }
-  const std::string type(proto::formats::kGeoJsonMediaType);
-  head.links.push_back({page_href(request, request.token), "self", type, ""});
-  Page page{revision, {}, feature.has_value()};
-  if (feature) head.links.push_back({page_href(request, PageToken{revision, feature->at}), "next", type, ""});
-  proto::formats::GeoJsonWriter writer(page.body, geojson_in_degrees(terrain.frame())
-                                                      ? proto::formats::Coordinates::kDegrees
-                                                      : proto::formats::Coordinates::kProjected);
-  writer.begin(head);
-  for (const Feature& f : features) write_feature(writer, request.kind, f);
+  make_absolute(page.links, base_url(context.config, request));
+  GeoJsonWriter writer(page.body, decimals_of(wanted.crs));
+  writer.begin({*matched, page.features.size(), page.links, std::nullopt});
+  for (const Feature& f : page.features) write_feature(writer, query.kind, in_wire_order(f, wanted.crs));
   writer.end();
   return page;
+}
+
+std::string id_text(FeatureKind kind, const Feature& feature) {
+  if (kind == FeatureKind::kVertices) return std::to_string(feature.ids[0].value());
+  if (kind == FeatureKind::kTriangles) return proto::formats::triangle_id(feature.ids);
+  return std::to_string(feature.ids[0].value()) + "-" + std::to_string(feature.ids[1].value());
+}
+
+HtmlPage html_of(const Page& page, FeatureKind kind) {
+  HtmlPage html{std::string(collection_name(kind)), "", page.links, {}, {"id", "coordinates"}, {}};
+  for (const Feature& feature : page.features) {
+    std::string body;
+    GeoJsonWriter writer(body, Coordinates::kDegrees);
+    write_feature(writer, kind, feature);
+    const auto begin = body.find("\"coordinates\":") + 14, end = body.find("},\"properties\"");
+    html.rows.push_back({id_text(kind, feature), body.substr(begin, end - begin)});
+  }
+  return html;
+}
+
+void add_content_crs(Response& response, const WireCrs& crs) {
+  if (!crs.uri.empty()) response.headers.emplace_back("Content-Crs", "<" + crs.uri + ">");
 }
 
 Result<Response> items(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
-  const auto asked = read_page_request(context, request);
-  if (!asked) return asked.error();
-  const auto version = asked->token ? (*tin)->page_version(asked->token->revision) : (*tin)->version();
+  const auto wanted = read_wanted(context, request, (*tin)->summary().frame);
+  if (!wanted) return wanted.error();
+  const auto& token = wanted->query.token;
+  const auto version = token ? (*tin)->page_version(token->revision) : (*tin)->version();
   if (!version) return version.error();
-  auto page = build_page(*asked, *version->terrain, version->revision);
+  auto page = build_page(context, request, *wanted, *version);
   if (!page) return page.error();
   if (page->has_next) (*tin)->keep_for_pages(*version);
-  Response response{
-      200, {{"Content-Type", std::string(proto::formats::kGeoJsonMediaType)}}, std::move(page->body)};
-  response.headers.emplace_back("ETag", entity_tag(**tin, page->revision, request));
+  const HtmlPage html = wants_html(request) ? html_of(*page, wanted->query.kind) : HtmlPage{};
+  Response response = negotiated(request, std::move(page->body), kGeoJson, html);
+  add_content_crs(response, wanted->crs);
+  response.headers.emplace_back("ETag", negotiated_tag(**tin, version->revision, request));
   return response;
 }
 
-/// The extent in CRS84, from the corners and edges of the extent in the TIN's CRS.
-std::optional<std::array<double, 4>> geojson_bbox(const app::Summary& summary) {
-  if (!summary.bounds) return std::nullopt;
-  const tin::frame::Frame& frame = summary.frame;
-  auto positions = Positions::to_geojson(frame);
-  if (!positions) return std::nullopt;
-  constexpr int kParts = 16;
-  std::vector<double> x, y;
-  const auto& [low, high] = *summary.bounds;
-  for (int i = 0; i <= kParts; ++i) {
-    const double u = static_cast<double>(i) / kParts;
-    const double along_x = frame.x.world(low.x + u * (double(high.x) - low.x)),
-                 along_y = frame.y.world(low.y + u * (double(high.y) - low.y));
-    x.insert(x.end(), {along_x, along_x, frame.x.world(low.x), frame.x.world(high.x)});
-    y.insert(y.end(), {frame.y.world(low.y), frame.y.world(high.y), along_y, along_y});
+Result<Response> item(Context& context, const Request& request) {
+  const auto tin = context.catalogue.find(request.path_parameter("tin"));
+  if (!tin) return tin.error();
+  const auto kind = collection_of(request);
+  if (!kind) return kind.error();
+  const std::string_view id = request.path_parameter("feature");
+  const auto [found, frame] = (*tin)->read([&](const Terrain& terrain, std::uint64_t) {
+    return std::pair(find_feature(terrain, *kind, id), terrain.frame());
+  });
+  const auto crs = wire_crs(frame, request.query_value("crs"), "query:crs");
+  if (!crs) return crs.error();
+  if (!found) return error(Code::kNotFound, "There is no feature \"" + std::string(id) + "\" in this collection.");
+  auto positions = Positions::between(frame.crs, crs->name, "query:crs");
+  if (!positions) return positions.error();
+  Feature feature = *found;
+  for (std::size_t i = 0; i < corner_count(*kind); ++i) {
+    const auto at = positions->convert(proto::Position2{feature.corners[i].x, feature.corners[i].y});
+    if (!at) return error(Code::kMalformed, "The feature has no place in this CRS.", "query:crs");
+    feature.corners[i].x = at->x;
+    feature.corners[i].y = at->y;
   }
-  std::vector<std::uint8_t> ok;
-  if (!positions->convert(x, y, ok)) return std::nullopt;
-  const auto [min_x, max_x] = std::minmax_element(x.begin(), x.end());
-  const auto [min_y, max_y] = std::minmax_element(y.begin(), y.end());
-  return std::array<double, 4>{*min_x, *min_y, *max_x, *max_y};
-}
-
-proto::CollectionDocument collection_document(const app::Tin& tin, const app::Summary& summary,
-                                              FeatureKind kind) {
-  const bool vertices = kind == FeatureKind::kVertices;
-  proto::CollectionDocument document;
-  document.id = vertices ? "vertices" : "triangles";
-  document.title = vertices ? "Vertices" : "Triangles";
-  document.description = vertices ? "The vertices of the TIN: 3D points whose ids edits use"
-                                  : "The triangles of the TIN: 3D polygons with their three vertex ids";
-  document.bbox = geojson_bbox(summary);
-  const std::string& crs = summary.frame.crs;
-  if (!crs.empty()) document.crs = {std::string(proto::kCrs84Uri)};
-  document.storage_crs = proto::crs_uri(crs).value_or("");
-  const std::string self = "/tins/" + tin.id() + "/collections/" + document.id;
-  document.links = {
-      {self, "self", std::string(kJson), ""},
-      {self + "/items", "items", std::string(proto::formats::kGeoJsonMediaType), document.title}};
-  return document;
-}
-
-Result<Response> collections(Context& context, const Request& request) {
-  const auto tin = context.catalogue.find(request.path_parameter("tin"));
-  if (!tin) return tin.error();
-  const app::Summary summary = (*tin)->summary();
-  const std::vector<proto::CollectionDocument> documents{
-      collection_document(**tin, summary, FeatureKind::kVertices),
-      collection_document(**tin, summary, FeatureKind::kTriangles)};
-  const std::vector<proto::Link> links{{request.path, "self", std::string(kJson), ""}};
-  Response response = json_answer(proto::collections_json(documents, links));
-  response.headers.emplace_back("ETag", entity_tag(**tin, summary.revision, request));
-  return response;
-}
-
-Result<Response> collection(Context& context, const Request& request) {
-  const auto tin = context.catalogue.find(request.path_parameter("tin"));
-  if (!tin) return tin.error();
-  const auto kind = feature_kind(request.path_parameter("collection"));
-  if (!kind) return error(Code::kNotFound, "The collections are vertices and triangles.");
-  const app::Summary summary = (*tin)->summary();
-  Response response = json_answer(proto::collection_json(collection_document(**tin, summary, *kind)));
-  response.headers.emplace_back("ETag", entity_tag(**tin, summary.revision, request));
+  std::vector<proto::Link> links{
+      {request.path, "self", kGeoJson, ""},
+      {request.path, "alternate", "text/html", "As a page"},
+      {"/tins/" + (*tin)->id() + "/collections/" + std::string(collection_name(*kind)), "collection", std::string(kJson),
+       "The collection"}};
+  make_absolute(links, base_url(context.config, request));
+  std::string body;
+  GeoJsonWriter writer(body, decimals_of(*crs));
+  write_feature(writer, *kind, in_wire_order(feature, *crs));
+  const Page page{"", links, {feature}, false};
+  Response response = negotiated(request, proto::formats::feature_with_links(body, links), kGeoJson, html_of(page, *kind));
+  add_content_crs(response, *crs);
+  response.headers.emplace_back("ETag", feature_tag(**tin, *found, request));
   return response;
 }
 
@@ -208,13 +218,12 @@ void add_features(http::Router& router, Context& context) {
   const auto on = [&context](auto f) {
     return guarded([&context, f](Request& request) { return f(context, request); });
   };
-  const std::string base = "/tins/{tin}/collections";
-  router.add({.method = Method::kGet, .pattern = base, .handler = on(collections)});
-  router.add({.method = Method::kGet, .pattern = base + "/{collection}", .handler = on(collection)});
+  const std::string pattern = "/tins/{tin}/collections/{collection}/items";
   router.add({.method = Method::kGet,
-              .pattern = base + "/{collection}/items",
-              .query = {"bbox", "limit", "next"},
+              .pattern = pattern,
+              .query = {"bbox", "bbox-crs", "crs", "datetime", "limit", "next"},
               .handler = on(items)});
+  router.add({.method = Method::kGet, .pattern = pattern + "/{feature}", .query = {"crs"}, .handler = on(item)});
 }
 
 }  // namespace server::api

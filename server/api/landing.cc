@@ -1,24 +1,15 @@
 // The landing page, the contract, conformance and health.
-#include <array>
-
 #include "proto/messages.h"
 #include "proto/openapi.h"
 #include "server/api/answer.h"
+#include "server/api/conformance.h"
+#include "server/api/links.h"
 #include "server/api/routes.h"
 #include "server/version.h"
 #include "server/web/pages.h"
 
 namespace server::api {
 namespace {
-
-constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
-
-/// Browsers ask for HTML first; programs for anything or for JSON.
-bool wants_html(const Request& request) {
-  const std::string accept = http::lower_case(request.header("accept"));
-  const auto html = accept.find("text/html"), json = accept.find("json");
-  return html != std::string::npos && (json == std::string::npos || html < json);
-}
 
 Result<Response> landing(const Request& request) {
   if (wants_html(request)) {
@@ -43,13 +34,7 @@ Result<Response> landing(const Request& request) {
 }
 
 Result<Response> conformance(const Request&) {
-  static const std::array<std::string, 4> classes{
-      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
-      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/landing-page",
-      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/json",
-      "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/oas30",
-  };
-  return json_answer(proto::conformance_json(classes));
+  return json_answer(proto::conformance_json(server_conformance()));
 }
 
 }  // namespace

@@ -9,7 +9,14 @@ http::Router make_router(Context& context) {
   add_edits(router, context);
   add_history(router, context);
   add_elevation(router, context);
+  add_tin_service(router, context);
+  add_collections(router, context);
+  add_slope(router, context);
+  add_profile(router, context);
+  add_contours(router, context);
+  add_volume(router, context);
   add_features(router, context);
+  add_feature_edits(router, context);
   add_export(router, context);
   add_processes(router, context);
   add_jobs(router, context);

@@ -1,9 +1,12 @@
 // /tins: list, create, show, delete.
 #include "proto/bbox.h"
 #include "proto/history.h"
+#include "server/api/conformance.h"
+#include "server/api/links.h"
 #include "server/api/routes.h"
 #include "server/api/tin_document.h"
 #include "server/api/upload.h"
+#include "server/app/source.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -41,7 +44,10 @@ proto::TinDocument tin_document(const app::Tin& tin) {
   if (summary.z_range) document.z_range = {summary.z_range->min, summary.z_range->max};
   const std::string self = "/tins/" + tin.id();
   document.links = {{self, "self", std::string(kJson), ""},
-                    {self + "/collections", "data", std::string(kJson), "Vertices and triangles"},
+                    {self, "alternate", "text/html", "As a page"},
+                    {self + "/api", "service-desc", std::string(kOpenApiType), "The contract of this TIN (OpenAPI 3.0)"},
+                    {self + "/conformance", "conformance", std::string(kJson), "Conformance classes"},
+                    {self + "/collections", "data", std::string(kJson), "Vertices, triangles and edges"},
                     {self + "/export?f=geotiff", "enclosure", "image/tiff; application=geotiff", "DEM"},
                     {self + "/export?f=geojson", "enclosure", "application/geo+json", "Triangles"}};
   return document;
@@ -77,12 +83,23 @@ Result<Response> list(Context& context, const Request& request) {
   return json_answer(proto::tin_list_json(answer));
 }
 
+HtmlPage page_of(const proto::TinDocument& document) {
+  HtmlPage page{document.title, "A terrain as a triangulated irregular network", document.links, {}, {}, {}};
+  page.facts = {{"Vertices", std::to_string(document.vertex_count)},
+                {"Triangles", std::to_string(document.triangle_count)},
+                {"Revision", std::to_string(document.revision)},
+                {"CRS", document.crs.empty() ? "not known" : document.crs},
+                {"Unit of elevations", document.vertical_unit.empty() ? "not known" : document.vertical_unit}};
+  return page;
+}
+
 Result<Response> show(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
-  const proto::TinDocument document = tin_document(**tin);
-  Response response = json_answer(proto::tin_json(document));
-  response.headers.emplace_back("ETag", entity_tag(**tin, document.revision, request));
+  proto::TinDocument document = tin_document(**tin);
+  make_absolute(document.links, base_url(context.config, request));
+  Response response = negotiated(request, proto::tin_json(document), kJson, page_of(document));
+  response.headers.emplace_back("ETag", negotiated_tag(**tin, document.revision, request));
   return response;
 }
 
@@ -163,8 +180,11 @@ Result<Response> create_from_json(Context& context, const Request& request) {
   }
   auto terrain = Terrain::build(*frame, placements, message->duplicates);
   if (!terrain) return within("/vertices", terrain.error());
-  auto made = context.catalogue.create(
-      {message->id, message->title.value_or(""), std::move(*terrain), message->duplicates, open});
+  std::string source;
+  if (!placements.empty())
+    source = app::attach_source(*terrain, app::vertices_as_source(*terrain), app::Completeness::kAllSamples);
+  auto made = context.catalogue.create({message->id, message->title.value_or(""), std::move(*terrain),
+                                        message->duplicates, open, std::move(source)});
   if (!made) return made.error();
   return created_answer(**made, request);
 }
@@ -191,7 +211,7 @@ void add_tins(http::Router& router, Context& context) {
   router.add({.method = Method::kPost,
               .pattern = "/tins",
               .query = {"id", "title", "crs", "resolution", "layer", "z-field", "vertical-unit", "duplicates",
-                        "format"},
+                        "format", "tolerance", "effort"},
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});

@@ -4,8 +4,10 @@
 #include "proto/crs_uri.h"
 #include "proto/messages.h"
 #include "server/api/job_answer.h"
+#include "server/api/processes/simplify.h"
 #include "server/api/tin_document.h"
 #include "server/app/import.h"
+#include "server/app/simplify.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -26,6 +28,28 @@ Result<std::array<double, 2>> parse_resolution(const std::string& text) {
   if (!(*x > 0) || !(*y > 0))
     return error(Code::kInvalidValue, "A resolution must be greater than 0.", "query:resolution");
   return std::array<double, 2>{*x, *y};
+}
+
+/// What the parameters tolerance and effort ask for, if they are there.
+Result<std::optional<tin::simplify::Options>> read_simplification(const Request& request) {
+  const auto text = request.query_value("tolerance"), effort = request.query_value("effort");
+  if (!text) {
+    if (!effort) return std::optional<tin::simplify::Options>();
+    return error(Code::kInvalidValue, "An effort goes with a tolerance.", "query:effort");
+  }
+  const auto tolerance = proto::parse_number(*text, "query:tolerance");
+  if (!tolerance) return tolerance.error();
+  if (!(*tolerance >= 0))
+    return error(Code::kInvalidValue, "A tolerance must not be negative.", "query:tolerance");
+  tin::simplify::Options options;
+  options.tolerance = *tolerance;
+  options.threads = app::simplify_threads();
+  if (effort) {
+    const auto named = proto::parse_effort(*effort, "query:effort");
+    if (!named) return named.error();
+    options.effort = processes::effort_of(*named);
+  }
+  return std::optional(std::move(options));
 }
 
 Result<app::ImportRequest> read_request(const Context& context, const Request& request) {
@@ -70,6 +94,9 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
     options.resolution_x = (*resolution)[0];
     options.resolution_y = (*resolution)[1];
   }
+  auto simplify = read_simplification(request);
+  if (!simplify) return simplify.error();
+  import.simplify = *std::move(simplify);
   return import;
 }
 
@@ -136,6 +163,9 @@ Result<Response> create_from_upload(Context& context, Request& request) {
   if (!import) return import.error();
   if (auto room = context.catalogue.check_room(import->id); !room) return room.error();
   if (prefers_async(request)) return import_as_job(context, request, std::move(*import));
+  if (import->simplify && import->simplify->effort > tin::simplify::Effort::kBalanced) {
+    return error(Code::kInvalidValue, "So much effort takes a job: ask with Prefer: respond-async.", "query:effort");
+  }
   const Slot slot(context.uploads);
   if (!slot.taken())
     return error(Code::kTooMany,

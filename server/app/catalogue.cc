@@ -159,7 +159,7 @@ Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
                  tin.duplicates,
                  tin.open_resolution,
                  1};
-  const auto stored = store_->create_tin(state.record, state.revision, checkpoint);
+  const auto stored = store_->create_tin(state.record, state.revision, checkpoint, tin.source);
   const std::lock_guard lock(mutex_);
   being_created_.erase(id);
   if (!stored) return stored.error();

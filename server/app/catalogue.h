@@ -39,6 +39,7 @@ class Catalogue {
     tin::terrain::Terrain terrain;
     tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
     OpenResolution open_resolution;
+    std::string source;  // bytes of what it was made of, as its amendments say; empty: none
   };
   /// Stores and serves a new TIN, at revision 1. Errors: kConflict (id taken), kTooLarge (vertices), kTooMany
   /// (TINs), kStorage.

@@ -1,28 +1,91 @@
 #include "server/app/import.h"
 
+#include "server/app/source.h"
+
 namespace server::app {
 
+using tin::base::Progress;
 using tin::base::Result;
+using tin::terrain::Duplicates;
+using tin::terrain::SourceSamples;
+using tin::terrain::Terrain;
 
-Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
-                                        const ImportRequest& request, tin::base::Progress& progress) {
-  if (auto room = catalogue.check_room(request.id); !room) return room.error();
+namespace {
+
+SourceSamples raster_source(gdal::Import& import) {
+  std::vector<std::uint64_t> valid = import.grid->valid;
+  return SourceSamples::restored_raster(import.grid, std::move(import.heights), std::move(valid));
+}
+
+/// Every sample becomes a vertex.
+Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, Progress& progress) {
+  auto terrain = Terrain::build(std::move(import.frame), import.placements, duplicates, &progress);
+  if (!terrain) return terrain.error();
+  import.placements = {};
+  terrain->set_source_grid(import.grid);
+  SourceSamples source = import.grid ? raster_source(import) : vertices_as_source(*terrain);
+  return ImportedTerrain{std::move(*terrain), std::move(source), std::nullopt, std::move(import.driver)};
+}
+
+/// A raster becomes a simplified terrain without one of all its samples.
+Result<ImportedTerrain> build_from_heights(gdal::Import import, const tin::simplify::Options& options,
+                                           Progress& progress) {
+  SourceSamples source = raster_source(import);
+  auto chosen = tin::simplify::simplify_samples(source, options, &progress);
+  if (!chosen) return chosen.error();
+  auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress);
+  if (!terrain) return terrain.error();
+  terrain->set_source_grid(import.grid);
+  return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, std::move(import.driver)};
+}
+
+/// Points are triangulated first: that is how duplicates find each other.
+Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplicates,
+                                          const tin::simplify::Options& options, Progress& progress) {
+  auto made = build_whole(std::move(import), duplicates, progress);
+  if (!made) return made.error();
+  auto outcome = tin::simplify::simplify(made->terrain, nullptr, {}, options, &progress);
+  if (!outcome) return outcome.error();
+  made->terrain = made->terrain.without(outcome->removed);
+  made->report = outcome->report;
+  return made;
+}
+
+Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, Progress& progress) {
+  if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress);
+  if (import.grid) return build_from_heights(std::move(import), *request.simplify, progress);
+  return build_from_points(std::move(import), request.duplicates, *request.simplify, progress);
+}
+
+}  // namespace
+
+Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const ImportRequest& request,
+                                       Progress& progress) {
   progress.begin_phase(0, 0.3);
-  auto import = gdal::import_file(file, request.options, &progress);
+  gdal::ImportOptions options = request.options;
+  options.heights_only = request.simplify.has_value();
+  auto import = gdal::import_file(file, options, &progress);
   if (!import) return import.error();
   if (request.vertical_unit) {
     import->frame.vertical_unit = request.vertical_unit->name;
     import->frame.vertical_unit_m = request.vertical_unit->metres;
   }
   progress.begin_phase(0.3, 0.9);
-  auto terrain = tin::terrain::Terrain::build(std::move(import->frame), import->placements,
-                                              request.duplicates, &progress);
-  if (!terrain) return terrain.error();
-  import->placements = {};
-  terrain->set_source_grid(import->grid);
-  progress.begin_phase(0.9, 1);
-  Catalogue::NewTin made{request.id, request.title, std::move(*terrain), request.duplicates, std::nullopt};
-  return catalogue.create(std::move(made));
+  auto made = build(*std::move(import), request, progress);
+  if (made) progress.begin_phase(0.9, 1);
+  return made;
+}
+
+Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
+                                        const ImportRequest& request, Progress& progress) {
+  if (auto room = catalogue.check_room(request.id); !room) return room.error();
+  auto made = import_terrain(file, request, progress);
+  if (!made) return made.error();
+  const auto completeness = made->report ? Completeness::kSomeSamples : Completeness::kAllSamples;
+  std::string source = attach_source(made->terrain, made->source, completeness);
+  if (progress.cancelled()) return tin::base::error(tin::base::Code::kCancelled, "Cancelled.");
+  return catalogue.create({request.id, request.title, std::move(made->terrain), request.duplicates,
+                           std::nullopt, std::move(source)});
 }
 
 }  // namespace server::app

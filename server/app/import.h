@@ -9,6 +9,7 @@
 #include "server/app/catalogue.h"
 #include "server/gdal/crs.h"
 #include "server/gdal/import.h"
+#include "tin/simplify/simplify.h"
 
 namespace server::app {
 
@@ -18,10 +19,28 @@ struct ImportRequest {
   tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
   std::optional<gdal::VerticalUnit> vertical_unit;  // in place of what the file says
   gdal::ImportOptions options;
+  /// Makes a simplified TIN at once. Of a raster only the result is ever triangulated; the samples are kept
+  /// all the same.
+  std::optional<tin::simplify::Options> simplify;
 };
 
-/// Reads the file, triangulates its samples and stores the TIN. Reports progress over all of it.
-/// Errors: as gdal::import_file, Terrain::build and Catalogue::create; then nothing is left behind.
+/// What a file becomes.
+struct ImportedTerrain {
+  tin::terrain::Terrain terrain;
+  tin::terrain::SourceSamples source;
+  std::optional<tin::simplify::Report> report;  // if it was simplified
+  std::string driver;                           // GDAL's name of the format
+};
+
+/// Reads the file and triangulates its samples, or what the request leaves of them. Reports progress over all
+/// of it. Errors: as gdal::import_file, Terrain::build and simplify::simplify.
+tin::base::Result<ImportedTerrain> import_terrain(const std::filesystem::path& file,
+                                                  const ImportRequest& request,
+                                                  tin::base::Progress& progress);
+
+/// Reads the file, triangulates its samples and stores the TIN with them. Reports progress over all of it.
+/// Errors: as gdal::import_file, Terrain::build, simplify::simplify and Catalogue::create; then nothing is
+/// left behind.
 tin::base::Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
                                                    const ImportRequest& request,
                                                    tin::base::Progress& progress);

@@ -1,38 +1,91 @@
 #include "server/app/simplify.h"
 
+#include <algorithm>
 #include <chrono>
+#include <thread>
 
 namespace server::app {
 
+using tin::base::Code;
+using tin::base::error;
 using tin::base::Result;
+using tin::terrain::SourceSamples;
+using tin::terrain::Terrain;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The samples of the source that are in force in a version; none where no source is kept, or no surface is
+/// left.
+Result<std::optional<SourceSamples>> samples_in_force(const Tin& tin, const Terrain& terrain,
+                                                      Simplified& result) {
+  if (terrain.mesh().dimension() < 2) return std::optional<SourceSamples>();
+  const auto source = tin.source();
+  if (!source) return source.error();
+  if (!*source) return std::optional<SourceSamples>();
+  auto in_force = terrain.amendments().in_force(**source, terrain);
+  result.against_source = true;
+  result.out_of_force = (*source)->sample_count() - in_force.sample_count();
+  return std::optional(std::move(in_force));
+}
+
+/// `terrain` as another TIN, thinned.
+Result<std::shared_ptr<Tin>> create_thinned(Catalogue& catalogue, const SimplifyRequest& request,
+                                            const Terrain& terrain, const Thinning& thinning) {
+  auto source = request.tin->source_bytes();
+  if (!source) return source.error();
+  return catalogue.create({request.as, request.tin->title() + ", simplified", thinned(terrain, thinning),
+                           request.tin->duplicates(), std::nullopt, *std::move(source)});
+}
+
+}  // namespace
+
+unsigned simplify_threads() {
+  return std::max(1U, std::thread::hardware_concurrency());
+}
 
 Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& request,
                                 tin::base::Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   if (request.as) {
     if (auto room = catalogue.check_room(request.as); !room) return room.error();
   }
   const Version seen = request.tin->version();
-  progress.begin_phase(0, 0.95);
-  auto outcome = tin::simplify::simplify(*seen.terrain, request.options, &progress);
+  Simplified result;
+  result.tin = request.tin;
+  const auto source = samples_in_force(*request.tin, *seen.terrain, result);
+  if (!source) return source.error();
+  progress.begin_phase(0.02, 0.95);
+  auto options = request.options;
+  options.threads = std::max(1U, std::thread::hardware_concurrency());
+  if (request.max_seconds) {
+    const auto end = start + std::chrono::duration_cast<Clock::duration>(
+                                 std::chrono::duration<double>(*request.max_seconds));
+    options.out_of_time = [end] { return Clock::now() >= end; };
+  }
+  options.protect = protected_positions(*seen.terrain, request.protect);
+  auto outcome = tin::simplify::simplify(*seen.terrain, *source ? &**source : nullptr,
+                                         seen.terrain->amendments().own(), options, &progress);
   if (!outcome) return outcome.error();
   progress.begin_phase(0.95, 1);
-  Simplified result{outcome->report, request.tin, 1, 0};
-  if (progress.cancelled()) return tin::base::error(tin::base::Code::kCancelled, "Cancelled.");
+  result.report = outcome->report;
+  if (progress.cancelled()) return error(Code::kCancelled, "Cancelled.");
+  const Thinning thinning{std::move(outcome->removed), std::move(outcome->inserted),
+                          std::move(outcome->reset)};
   if (request.as) {
-    auto made =
-        catalogue.create({request.as, request.tin->title() + ", simplified",
-                          seen.terrain->without(outcome->removed), request.tin->duplicates(), std::nullopt});
+    auto made = create_thinned(catalogue, request, *seen.terrain, thinning);
     if (!made) return made.error();
     result.tin = *made;
+    result.revision = 1;
   } else {
-    const auto landed = request.tin->remove_vertices(seen, outcome->removed, {now_ms(), "", "simplify"});
+    const auto landed = request.tin->land(seen, thinning, {now_ms(), "", "simplify"});
     if (!landed) return landed.error();
     result.revision = landed->revision;
     result.edited_meanwhile = landed->edited_meanwhile;
     result.report.vertices_after = landed->vertices_left;
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return result;
 }
 

@@ -1,8 +1,10 @@
 #include "server/app/tin.h"
 
-#include "server/obs/log.h"
+#include <tuple>
+
 #include "tin/codec/change.h"
 #include "tin/codec/checkpoint.h"
+#include "tin/codec/source.h"
 #include "tin/terrain/vertex_set.h"
 
 namespace server::app {
@@ -110,6 +112,7 @@ Result<void> Tin::retire() {
   Write write{Terms{}};
   write.instead = [&] {
     auto removed = store_.remove_tin(id());
+    const Lock lock(mutex_);  // for source_bytes()
     retired_ = removed.ok();
     return removed;
   };
@@ -117,16 +120,49 @@ Result<void> Tin::retire() {
   return done ? Result<void>() : Result<void>(done.error());
 }
 
+Result<std::string> Tin::source_bytes() const {
+  auto bytes = store_.load_source(id());
+  const std::shared_lock lock(mutex_);
+  if (retired_)
+    return error(Code::kNotFound,
+                 "The TIN \"" + id() + "\" has been deleted.");  // what was read may be another TIN's by now
+  return bytes;
+}
+
+Result<std::shared_ptr<const tin::terrain::SourceSamples>> Tin::source() const {
+  using Source = std::shared_ptr<const tin::terrain::SourceSamples>;
+  const auto [kind, grid] = read([](const Terrain& terrain, std::uint64_t) {
+    return std::pair(terrain.amendments().kind(), terrain.shared_source_grid());
+  });
+  if (kind == tin::terrain::SourceKind::kNone) return Source();
+  const std::lock_guard reading(source_mutex_);
+  if (Source present = source_.lock()) return present;
+  const auto bytes = source_bytes();
+  if (!bytes) return bytes.error();
+  auto decoded =
+      tin::codec::decode_source(*bytes, kind == tin::terrain::SourceKind::kRaster ? grid : nullptr);
+  if (!decoded) return decoded.error();
+  Source source = std::make_shared<const tin::terrain::SourceSamples>(*std::move(decoded));
+  source_ = source;
+  return source;
+}
+
 Result<void> Tin::write_checkpoint() {
+  // What became of the source's samples depends on meshes that are gone: it is asked of the terrain, as is
+  // the digest.
+  const auto [revision, digest, amendments] = read([](const Terrain& terrain, std::uint64_t present) {
+    return std::tuple(present, terrain.digest(), terrain.amendments());
+  });
   auto stored = store_.load(id());
   if (!stored) return stored.error();
-  if (stored->journal.empty()) return {};
+  if (revision <= stored->checkpoint_revision) return {};
   auto checkpoint = tin::codec::decode_checkpoint(stored->checkpoint);
   if (!checkpoint) return checkpoint.error();
   stored->checkpoint = {};
   tin::terrain::VertexSet set(std::move(checkpoint->vertices), checkpoint->next_id);
   std::uint64_t steps = 0;
   for (const store::JournalRow& row : stored->journal) {
+    if (row.revision > revision) break;
     const auto change = tin::codec::decode_change(row.record);
     if (!change) return change.error();
     if (auto replayed = set.replay(*change); !replayed) return replayed;
@@ -134,9 +170,12 @@ Result<void> Tin::write_checkpoint() {
   }
   checkpoint->vertices = set.vertices();
   checkpoint->next_id = set.next_id();
-  checkpoint->revision = stored->journal.back().revision;
+  checkpoint->revision = revision;
   checkpoint->digest = tin::terrain::digest_of(checkpoint->vertices, checkpoint->frame);
-  auto put = store_.put_checkpoint(id(), checkpoint->revision, tin::codec::encode_checkpoint(*checkpoint));
+  checkpoint->amendments = amendments;
+  if (checkpoint->digest != digest)
+    return error(Code::kInternal, "The journal does not lead to the terrain that is served.");
+  auto put = store_.put_checkpoint(id(), revision, tin::codec::encode_checkpoint(*checkpoint));
   if (put) steps_since_checkpoint_ -= steps;
   return put;
 }
@@ -150,6 +189,7 @@ Result<TinState> Tin::load(store::Store& store, std::string_view id) {
     const auto change = tin::codec::decode_change(row.record);
     if (!change) return change.error();
     if (auto replayed = state->terrain.replay(*change); !replayed) return replayed.error();
+    state->terrain.amend(*change);
     state->revision = row.revision;
     state->steps_since_checkpoint += change->steps.size();
   }
@@ -167,6 +207,7 @@ std::string Tin::encode(const Terrain& terrain, tin::terrain::Duplicates duplica
   checkpoint.open_resolution = open_resolution;
   checkpoint.vertices = terrain.vertices_by_id();
   checkpoint.grid = terrain.shared_source_grid();
+  checkpoint.amendments = terrain.amendments();
   return tin::codec::encode_checkpoint(checkpoint);
 }
 
@@ -179,6 +220,7 @@ Result<TinState> Tin::decode(const store::TinRecord& record, std::string_view by
     return error(Code::kStorage, "The checkpoint's digest is not that of its vertices.");
   }
   terrain->set_source_grid(checkpoint->grid);
+  terrain->set_amendments(std::move(checkpoint->amendments));
   return TinState{record, std::move(*terrain), checkpoint->duplicates, checkpoint->open_resolution,
                   checkpoint->revision};
 }

@@ -22,18 +22,20 @@
 #include <vector>
 
 #include "server/app/fair_mutex.h"
+#include "server/app/thinning.h"
 #include "server/app/version.h"
 #include "server/app/world_edit.h"
 #include "server/app/write.h"
 #include "server/app/write_queue.h"
 #include "server/store/store.h"
 #include "tin/base/result.h"
+#include "tin/terrain/source_samples.h"
 #include "tin/terrain/terrain.h"
 
 namespace server::app {
 
-/// What became of the vertices that a simplification would remove.
-struct Removed {
+/// What became of a simplification.
+struct Landed {
   std::uint64_t revision = 0;
   std::size_t vertices_left = 0;
   bool edited_meanwhile = false;  // others edited the TIN since the version that was seen
@@ -103,11 +105,18 @@ class Tin {
   /// kConflict (later ones changed what it changed), and as edit().
   tin::base::Result<Edited> revert(std::uint64_t revision, const Terms& terms);
 
-  /// Removes the vertices (ascending) as one revision; those that are gone meanwhile, or changed since
-  /// `seen`, stay out of it. A large removal is prepared beside readers and editors. Errors: kNotFound
-  /// (retired), kStorage, kNoSpace.
-  tin::base::Result<Removed> remove_vertices(const Version& seen, std::span<const VertexId> ids,
-                                             const store::RevisionInfo& info);
+  /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`,
+  /// and positions where another stands by now, stay out of it. A large one is prepared beside readers and
+  /// editors. Errors: kTooLarge (vertices per TIN), kNotFound (retired), kStorage.
+  tin::base::Result<Landed> land(const Version& seen, const Thinning& thinning,
+                                 const store::RevisionInfo& info);
+
+  /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store
+  /// when nobody else has them in hand, and given back when the last one lets go. Errors: kNotFound
+  /// (retired), kStorage, kMalformed.
+  tin::base::Result<std::shared_ptr<const tin::terrain::SourceSamples>> source() const;
+  /// The same as bytes, for another TIN; empty where none are kept. Errors: kNotFound (retired), kStorage.
+  tin::base::Result<std::string> source_bytes() const;
 
   /// Errors: kNotFound (retired), kStorage, kNoSpace.
   tin::base::Result<void> rename(std::string_view title);
@@ -136,6 +145,7 @@ class Tin {
   using Lock = std::unique_lock<FairSharedMutex>;
   struct Batch;
 
+  tin::base::Error too_many_vertices() const;
   void require_terrain() const;  // throws if it was lost
 
   // The writer's turn: one thread at a time, see WriteQueue.
@@ -145,6 +155,7 @@ class Tin {
   void carry_out_together(std::span<Write* const> writes);
   void apply_all(std::span<Write* const> writes, Batch& batch);
   void apply_one(Write& write, Batch& batch);
+  void take_back(const Batch& batch);
   void publish(Batch& batch, const tin::base::Result<void>& durable);
   void fit_and_apply(Write& write);
   void take_over(Write& write);
@@ -155,8 +166,7 @@ class Tin {
   void reload() noexcept;
 
   tin::base::Result<std::optional<Edited>> answered_before(const Terms& terms);
-  tin::base::Result<Removed> remove_in_place(const Version& seen, std::span<const VertexId> ids,
-                                             const Terms& terms);
+  tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning, const Terms& terms);
   tin::base::Result<Edited> replay_aside(const tin::terrain::Change& change, const Terms& terms);
   tin::base::Error explain_conflict(std::uint64_t revision, const tin::terrain::Change& inverse,
                                     const tin::base::Error& conflict);
@@ -178,6 +188,8 @@ class Tin {
   mutable std::mutex cache_mutex_;
   mutable std::optional<Summary> summary_;
   KeptVersions kept_;
+  mutable std::mutex source_mutex_;  // held while the source is read, so that it is read once
+  mutable std::weak_ptr<const tin::terrain::SourceSamples> source_;
   std::atomic<std::uint64_t> steps_since_checkpoint_;
   WriteQueue<Write> writes_;
 };

@@ -65,6 +65,8 @@ struct Tin::Batch {
   std::vector<Repeated> repeated;
   std::uint64_t revision = 0;  // after all of them
   std::size_t steps = 0;
+  bool twice = true;                    // applied, taken back, and performed again when it is durable
+  tin::terrain::Amendments amendments;  // before it, unless it is done twice
 };
 
 Result<Edited> Tin::submit(Write& write) {
@@ -124,37 +126,44 @@ Result<std::optional<Edited>> Tin::answered_before(const Terms& terms) {
 
 void Tin::carry_out_together(std::span<Write* const> writes) {
   Batch batch;
+  std::size_t weight = 0;
+  for (const Write* write : writes) weight += write->weight;
+  batch.twice = weight <= kDoneTwice;
   Lock lock = exclusive();
   std::vector<store::Entry> entries;
-  bool twice = false;
   try {
+    if (!batch.twice) batch.amendments = terrain_->amendments();
     apply_all(writes, batch);
     for (const Batch::Applied& one : batch.applied)
       entries.push_back(entry_of(*one.write, one.applied.change, one.edited));
-    twice = batch.steps <= kDoneTwice;
-    if (twice) {
-      for (auto one = batch.applied.rbegin(); one != batch.applied.rend(); ++one)
-        terrain_->undo(one->applied);
-    }
+    if (batch.twice) take_back(batch);
   } catch (...) {
     reload();  // who knows where it stopped
     throw;
   }
-  if (twice) lock.unlock();
+  if (batch.twice) lock.unlock();
   const auto durable = commit(entries);
   try {
-    if (twice && durable) {
+    if (batch.twice && durable) {
       lock = exclusive();
-      for (const Batch::Applied& one : batch.applied) TIN_CHECK(terrain_->replay(one.applied.change).ok());
-    } else if (!twice && !durable) {
-      for (auto one = batch.applied.rbegin(); one != batch.applied.rend(); ++one)
-        terrain_->undo(one->applied);
+      for (const Batch::Applied& one : batch.applied) {
+        TIN_CHECK(terrain_->replay(one.applied.change).ok());
+        terrain_->amend(one.applied.change);
+      }
+    } else if (!batch.twice && !durable) {
+      take_back(batch);
+      terrain_->set_amendments(std::move(batch.amendments));
     }
   } catch (...) {
     if (!lock.owns_lock()) lock.lock();
     reload();
   }
   publish(batch, durable);
+}
+
+/// Canonicity makes it exact.
+void Tin::take_back(const Batch& batch) {
+  for (auto one = batch.applied.rbegin(); one != batch.applied.rend(); ++one) terrain_->undo(one->applied);
 }
 
 void Tin::apply_all(std::span<Write* const> writes, Batch& batch) {
@@ -186,11 +195,11 @@ void Tin::apply_one(Write& write, Batch& batch) {
   }
   if (!applied->change.steps.empty() && terrain_->vertex_count() > max_vertices_) {
     terrain_->undo(*applied);
-    write.outcome =
-        error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices.");
+    write.outcome = too_many_vertices();
     return;
   }
   if (!applied->change.steps.empty()) ++batch.revision;
+  if (!batch.twice) terrain_->amend(applied->change);
   batch.steps += applied->change.steps.size();
   Edited edited{batch.revision, std::move(applied->ids)};
   batch.applied.push_back({&write, std::move(*applied), std::move(edited)});
@@ -241,13 +250,13 @@ void Tin::fit_and_apply(Write& write) {
   auto applied = (*fitted)->apply(*edits, duplicates_);
   if (!applied) return refuse(applied.error());
   if ((*fitted)->vertex_count() > max_vertices_) {
-    return refuse(
-        error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices."));
+    return refuse(too_many_vertices());
   }
   if (applied->change.steps.empty()) {
     write.outcome = Edited{revision_, std::move(applied->ids)};
     return;
   }
+  (*fitted)->amend(applied->change);
   Edited edited{revision_ + 1, std::move(applied->ids)};
   store::Entry entry = entry_of(write, applied->change, edited);
   entry.checkpoint = empty;
@@ -271,6 +280,10 @@ void Tin::take_over(Write& write) {
   write.outdated = write.prepared_from != revision_;
   if (write.outdated) {
     write.outcome = error(Code::kConflict, "The TIN has changed meanwhile.");
+    return;
+  }
+  if (write.prepared->vertex_count() > max_vertices_) {
+    write.outcome = too_many_vertices();
     return;
   }
   Edited edited{revision_ + 1, {}};
@@ -344,6 +357,10 @@ void Tin::reload() noexcept {
   } catch (const std::exception& exception) {
     terrain_ = nullptr;
   }
+}
+
+tin::base::Error Tin::too_many_vertices() const {
+  return error(Code::kTooLarge, "A TIN may have at most " + std::to_string(max_vertices_) + " vertices.");
 }
 
 void Tin::require_terrain() const {

@@ -4,42 +4,116 @@
 #include <string>
 
 #include "server/cli/check.h"
+#include "server/cli/info.h"
+#include "server/cli/output_file.h"
 #include "server/cli/serve.h"
+#include "server/cli/simplify.h"
 #include "server/version.h"
 
 namespace server::cli {
 
-int run(int argc, char** argv) {
-  CLI::App app("Tinsmith: a server for adaptive terrain TINs", "tinsmith");
-  app.set_version_flag("--version", "tinsmith " + std::string(version()));
-  app.require_subcommand(1);
-  ServeArguments arguments;
-  auto* serving = app.add_subcommand("serve", "Serve TINs over HTTP until SIGTERM or SIGINT");
-  serving->add_option(
+namespace {
+
+CLI::App* add_serve(CLI::App& app, ServeArguments& arguments) {
+  auto* command = app.add_subcommand("serve", "Serve TINs over HTTP until SIGTERM or SIGINT");
+  command->add_option(
       "--listen", arguments.listen,
       "Address and port, 127.0.0.1:8080 unless the configuration says otherwise; port 0 takes a free one");
-  serving->add_option("--data", arguments.data, "Folder of the TINs; made if it is not there");
-  serving->add_option("--config", arguments.config,
+  command->add_option("--data", arguments.data, "Folder of the TINs; made if it is not there");
+  command->add_option("--config", arguments.config,
                       "Configuration file (JSON); see deploy/config.example.json");
+  return command;
+}
+
+CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
+  auto* command = app.add_subcommand(
+      "simplify", "Make a TIN of few vertices that stays within a tolerance of every sample of a file");
+  command->add_option("input", arguments.input, "Raster of elevations, or points")->required();
+  command
+      ->add_option("-o,--output", arguments.output,
+                   "File to write; its suffix says the format: " + output_formats())
+      ->required();
+  command->add_option("-t,--tolerance", arguments.tolerance,
+                      "Largest vertical distance to any sample, in the unit of the elevations");
+  command->add_option("--max-vertices", arguments.max_vertices,
+                      "No more vertices than these; goes before the tolerance (the exit status is 3 then)");
+  command->add_option("--max-seconds", arguments.max_seconds,
+                      "Certify and write the best result so far once so much time is spent");
+  command->add_option("--effort", arguments.effort, "fast, balanced, thorough or best")
+      ->capture_default_str();
+  command->add_option("--seed", arguments.seed, "Chooses the way of the search")->capture_default_str();
+  command->add_option("--threads", arguments.threads, "How many threads work; 0: as the processor has")
+      ->capture_default_str();
+  command->add_option("--crs", arguments.crs, "CRS of the file, in place of what it says: EPSG:n or WKT");
+  command->add_option("--format", arguments.format, "Format of the file, where its content leaves it open");
+  command->add_flag("--json", arguments.json, "Print the report as JSON");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print neither a report nor a progress bar");
+  return command;
+}
+
+CLI::App* add_info(CLI::App& app, InfoArguments& arguments) {
+  auto* command =
+      app.add_subcommand("info", "Say what a file of elevations is: format, CRS, size, range of heights");
+  command->add_option("file", arguments.file, "Raster of elevations, or points")->required();
+  command->add_option("--crs", arguments.crs, "CRS of the file, in place of what it says: EPSG:n or WKT");
+  command->add_option("--format", arguments.format, "Format of the file, where its content leaves it open");
+  command->add_flag("--json", arguments.json, "Print JSON");
+  return command;
+}
+
+/// A data folder, and a file beside it.
+struct FolderArguments {
   std::string folder, file;
-  auto* checking =
+};
+
+CLI::App* add_check(CLI::App& app, FolderArguments& arguments) {
+  auto* command =
       app.add_subcommand("check", "Verify a data folder: checksums, digests, Delaunay (0 sound, 1 damaged)");
-  checking->add_option("folder", folder, "The data folder; a server may run on it")->required();
-  auto* backing_up = app.add_subcommand("backup", "Write a data folder to one file; a server may run on it");
-  backing_up->add_option("folder", folder, "The data folder")->required();
-  backing_up->add_option("file", file, "The backup, which must not be there yet")->required();
-  auto* restoring = app.add_subcommand("restore", "Make a data folder of a backup");
-  restoring->add_option("file", file, "The backup")->required();
-  restoring->add_option("folder", folder, "A folder that is empty or not there yet")->required();
+  command->add_option("folder", arguments.folder, "The data folder; a server may run on it")->required();
+  return command;
+}
+
+CLI::App* add_backup(CLI::App& app, FolderArguments& arguments) {
+  auto* command = app.add_subcommand("backup", "Write a data folder to one file; a server may run on it");
+  command->add_option("folder", arguments.folder, "The data folder")->required();
+  command->add_option("file", arguments.file, "The backup, which must not be there yet")->required();
+  return command;
+}
+
+CLI::App* add_restore(CLI::App& app, FolderArguments& arguments) {
+  auto* command = app.add_subcommand("restore", "Make a data folder of a backup");
+  command->add_option("file", arguments.file, "The backup")->required();
+  command->add_option("folder", arguments.folder, "A folder that is empty or not there yet")->required();
+  return command;
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  CLI::App app("Tinsmith: adaptive terrain TINs, served over HTTP or made of files", "tinsmith");
+  app.set_version_flag("--version", "tinsmith " + std::string(version()));
+  app.require_subcommand(1);
+  ServeArguments serving;
+  SimplifyArguments simplifying;
+  InfoArguments informing;
+  FolderArguments keeping;
+  add_serve(app, serving);
+  const auto* simplify_command = add_simplify(app, simplifying);
+  const auto* info_command = add_info(app, informing);
+  const auto* check_command = add_check(app, keeping);
+  const auto* backup_command = add_backup(app, keeping);
+  const auto* restore_command = add_restore(app, keeping);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (*checking) return check(folder);
-  if (*backing_up) return back_up(folder, file);
-  if (*restoring) return restore(file, folder);
-  return serve(arguments);
+  if (simplify_command->parsed()) return simplify(simplifying);
+  if (info_command->parsed()) return info(informing);
+  if (check_command->parsed()) return check(keeping.folder);
+  if (backup_command->parsed()) return back_up(keeping.folder, keeping.file);
+  if (restore_command->parsed()) return restore(keeping.file, keeping.folder);
+  return serve(serving);
 }
 
 }  // namespace server::cli

@@ -218,6 +218,7 @@ Result<CrsInfo> describe_crs(const OGRSpatialReference& crs) {
   if (!name) return name.error();
   info.name = *std::move(name);
   info.vertical = vertical_unit_of(crs);
+  info.northing_first = crs.EPSGTreatsAsLatLong() != FALSE || crs.EPSGTreatsAsNorthingEasting() != FALSE;
   return info;
 }
 

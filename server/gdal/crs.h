@@ -28,6 +28,8 @@ struct CrsInfo {
   std::string name;
   tin::frame::GroundScale scale;
   std::optional<VerticalUnit> vertical;  // of a compound or three-dimensional CRS
+  /// Whether its authority puts latitude or northing first: the order of coordinates where a standard says so.
+  bool northing_first = false;
 };
 
 /// Reads "EPSG:n", the OGC URI or URN of an EPSG code, any of the names of CRS84, or WKT. Needs no file and

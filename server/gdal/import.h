@@ -17,6 +17,7 @@
 #include "tin/frame/frame.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/source_grid.h"
+#include "tin/terrain/source_samples.h"
 
 namespace server::gdal {
 
@@ -31,8 +32,10 @@ struct ImportOptions {
   double resolution_y = 0;
   std::string layer;                       // vector files: the layer; empty: the first with points
   std::string z_field;                     // point files: column or field of the heights
-  std::uint64_t max_samples = 50'000'000;  // valid pixels, or points
+  std::uint64_t max_samples = 50'000'000;  // valid pixels, or points; not for a raster's heights alone
   std::uint64_t max_pixels = 200'000'000;  // width x height of a raster
+  /// Of a raster no placements, which take 16 bytes each, but its heights only.
+  bool heights_only = false;
 };
 
 /// What a file holds, on a lattice that fits it.
@@ -42,6 +45,7 @@ struct Import {
   /// for. Heights are in frame.vertical_unit.
   std::vector<tin::terrain::Placement> placements;
   std::shared_ptr<tin::terrain::SourceGrid> grid;  // null for points
+  tin::terrain::SourceSamples::Heights heights;    // of a raster: one per pixel, row by row
   std::string driver;                              // GDAL's name of the format, or "CSV"
 };
 

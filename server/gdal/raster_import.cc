@@ -9,6 +9,7 @@
 
 #include "server/gdal/import_internal.h"
 #include "server/gdal/library.h"
+#include "tin/terrain/heights_builder.h"
 
 namespace server::gdal {
 namespace {
@@ -195,7 +196,7 @@ Result<Import> fit(const ImportTask& task, GDALDataset& dataset) {
   return import;
 }
 
-/// Fills placements and valid bits.
+/// Fills placements, heights and valid bits.
 std::optional<Error> read_samples(const ImportTask& task, GDALRasterBand& band, Samples& samples,
                                   Import& import) {
   const Complaints complaints;
@@ -203,6 +204,8 @@ std::optional<Error> read_samples(const ImportTask& task, GDALRasterBand& band, 
   const auto width = static_cast<std::size_t>(grid.width);
   const std::size_t pixels = width * static_cast<std::size_t>(grid.height);
   grid.valid.assign((pixels + 63) / 64, 0);
+  tin::terrain::HeightsBuilder heights(pixels);
+  std::size_t count = 0;
   int block_x = 0, block_y = 0;
   band.GetBlockSize(&block_x, &block_y);
   const int at_once =
@@ -217,18 +220,24 @@ std::optional<Error> read_samples(const ImportTask& task, GDALRasterBand& band, 
     const std::size_t first = static_cast<std::size_t>(within) * width;
     for (std::int32_t column = 0; column < grid.width; ++column) {
       const double height = samples.height(first + static_cast<std::size_t>(column));
-      if (std::isnan(height)) continue;
+      if (std::isnan(height)) {
+        heights.skip();
+        continue;
+      }
+      heights.add(height);
+      ++count;
       const std::size_t bit = static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column);
       grid.valid[bit / 64] |= std::uint64_t{1} << (bit % 64);
-      import.placements.push_back({grid.centre(column, row), height});
+      if (!task.options.heights_only) import.placements.push_back({grid.centre(column, row), height});
     }
-    if (import.placements.size() > task.options.max_samples)
+    if (!task.options.heights_only && count > task.options.max_samples)
       return too_many_samples(task.options.max_samples);
     task.report(static_cast<double>(row + 1) / grid.height);
   }
-  if (import.placements.empty())
+  if (count == 0)
     return error(Code::kInvalidValue, "The raster holds no elevations: it is all nodata");
-  if (import.placements.size() == pixels) grid.valid.clear();
+  if (count == pixels) grid.valid.clear();
+  import.heights = std::move(heights).finish();
   return std::nullopt;
 }
 

@@ -168,7 +168,7 @@ int run_build(std::span<const std::string> arguments) {
   const Options options = parse(arguments);
   const auto points = make_input(options.input, options.points, options.seed);
   const auto ours = [&](JsonLine& json) {
-    const PeakMemory peak;
+    const PeakMemory peak(tin::mesh::kept_pages());
     Triangulation triangulation;
     std::vector<VertexSlot> slots;
     const Stopwatch watch;

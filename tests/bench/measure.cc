@@ -36,7 +36,7 @@ Spent Stopwatch::spent() const {
   return {end.wall_s - start_.wall_s, end.user_s - start_.user_s, end.system_s - start_.system_s};
 }
 
-PeakMemory::PeakMemory() : before_(status("VmRSS")) { std::ofstream("/proc/self/clear_refs") << "5\n"; }
+PeakMemory::PeakMemory(std::size_t idle) : before_(status("VmRSS") - idle) { std::ofstream("/proc/self/clear_refs") << "5\n"; }
 
 std::size_t PeakMemory::bytes() const {
   const std::size_t peak = status("VmHWM");

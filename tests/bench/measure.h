@@ -22,10 +22,11 @@ class Stopwatch {
   Spent start_;
 };
 
-/// The most resident memory above what was resident when this was made. Linux only; 0 elsewhere.
+/// The most resident memory above what was resident when this was made; `idle` bytes of that, which wait to be used again,
+/// count as not resident. Linux only; 0 elsewhere.
 class PeakMemory {
  public:
-  PeakMemory();
+  explicit PeakMemory(std::size_t idle = 0);
   std::size_t bytes() const;
 
  private:

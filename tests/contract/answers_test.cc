@@ -23,6 +23,9 @@ class AnswersTest : public testing::Test {
       : server_([](server::Config& config) {
           config.limits.body_bytes_memory = 2048;
           config.limits.export_pixels = 1000;
+          config.limits.polygon_positions = 5;
+          config.limits.contour_levels = 20;
+          config.limits.answer_positions = 6;
         }) {
     EXPECT_EQ(server_.post_json("/tins", kHill).status, 201);
     EXPECT_EQ(server_.upload("/tins?id=grid&crs=EPSG:32617", "text/plain", ascii_grid(5, 4)).status, 201);
@@ -151,6 +154,62 @@ class AnswersTest : public testing::Test {
             {{"POST", path, json, R"({"positions":[[1e999,0]]})"}, 422}});
   }
 
+  void ask_slopes_and_lines() {
+    const std::string path = "/tins/hill", json = "application/json", sight = "/tins/grid/line-of-sight";
+    expect({{{"GET", path + "/slope?x=500050&y=4500020"}, 200},
+            {{"GET", path + "/slope?x=0&y=0"}, 200},
+            {{"GET", path + "/slope?x=0"}, 400},
+            {{"GET", "/tins/none/slope?x=0&y=0"}, 404},
+            {{"GET", path + "/slope?x=0&y=0&voids=some"}, 422},
+            {{"POST", path + "/slope", json, R"({"positions":[[500050,4500020],[0,0]]})"}, 200},
+            {{"POST", path + "/slope", json, R"({"positions":1})"}, 400},
+            {{"POST", "/tins/none/slope", json, R"({"positions":[]})"}, 404},
+            {{"POST", path + "/slope", json, std::string(3000, ' ')}, 413},
+            {{"POST", path + "/slope", "text/plain", "{}"}, 415},
+            {{"POST", path + "/slope", json, R"({"positions":[],"crs":"EPSG:1"})"}, 422},
+            {{"GET", path + "/profile?coords=500010,4500010,500020,4500020"}, 200},
+            {{"GET", path + "/profile?coords=500010"}, 400},
+            {{"GET", "/tins/none/profile?coords=0,0"}, 404},
+            {{"GET", "/tins/grid/profile?coords=0.5,0.5,4.5,3.4"}, 413},
+            {{"GET", path + "/profile?coords=1e300,0,1,1"}, 422},
+            {{"POST", path + "/profile", json, R"({"positions":[[500010,4500010],[0,4500020]]})"}, 200},
+            {{"POST", path + "/profile", json, R"({"positions":[[1]]})"}, 400},
+            {{"POST", "/tins/none/profile", json, R"({"positions":[]})"}, 404},
+            {{"POST", "/tins/grid/profile", json, R"({"positions":[[0.5,0.5],[4.5,3.4]]})"}, 413},
+            {{"POST", path + "/profile", "text/plain", "{}"}, 415},
+            {{"POST", path + "/profile", json, R"({"positions":[]})"}, 422},
+            {{"GET", sight + "?observer=1,1&target=2,1&observer-height=2"}, 200},
+            {{"GET", sight + "?observer=1,1"}, 400},
+            {{"GET", "/tins/none/line-of-sight?observer=1,1&target=2,1"}, 404},
+            {{"GET", sight + "?observer=0.5,0.5&target=4.5,3.4"}, 413},
+            {{"GET", sight + "?observer=1,1&target=9,9"}, 422}});
+  }
+
+  void ask_contours_and_volumes() {
+    const std::string path = "/tins/hill";
+    expect({{{"GET", path + "/contours?interval=2"}, 200},
+            {{"GET", path + "/contours?levels=12,13.5&crs=EPSG:32617&bbox=500000,4500000,500050,4500100"}, 200},
+            {{"GET", "/tins/local/contours?interval=1"}, 200},
+            {{"GET", "/tins/empty/contours?interval=1"}, 200},
+            {{"GET", path + "/contours?interval=x"}, 400},
+            {{"GET", "/tins/none/contours?interval=1"}, 404},
+            {{"GET", path + "/contours?interval=0.01"}, 413},
+            {{"GET", path + "/contours"}, 422},
+            {{"GET", path + "/volume?level=12"}, 200},
+            {{"GET", path + "/volume?level=12&bbox=500000,4500000,500050,4500100"}, 200},
+            {{"GET", "/tins/empty/volume?level=12"}, 200},
+            {{"GET", path + "/volume"}, 400},
+            {{"GET", "/tins/none/volume?level=12"}, 404},
+            {{"GET", path + "/volume?level=12&polygon=0,0,1,0,2,0,2,1,2,2,0,2"}, 413},
+            {{"GET", path + "/volume?level=12&polygon=0,0,1,0,2,0"}, 422},
+            {{"GET", path + "/surface-area"}, 200},
+            {{"GET", "/tins/local/surface-area?polygon=1,1,5,1,1,5"}, 200},
+            {{"GET", path + "/surface-area?bbox=1"}, 400},
+            {{"GET", "/tins/none/surface-area"}, 404},
+            {{"GET", path + "/surface-area?polygon=0,0,1,0,2,0,2,1,2,2,0,2"}, 413},
+            {{"GET", path + "/surface-area?bbox=0,0,1,1&polygon=0,0,1,0,1,1"}, 422}});
+  }
+
   void ask_collections() {
     const std::string path = "/tins/hill/collections";
     expect({{{"GET", path}, 200},
@@ -160,7 +219,25 @@ class AnswersTest : public testing::Test {
             {{"GET", path + "/vertices"}, 200},
             {{"GET", path + "/triangles"}, 200},
             {{"GET", path + "/vertices?a=1"}, 400},
-            {{"GET", path + "/edges"}, 404},
+            {{"GET", path + "/edges"}, 200},
+            {{"GET", path + "/vertices", "", "", "Accept: text/html\r\n"}, 200},
+            {{"GET", path + "/faces"}, 404},
+            {{"GET", path + "/edges/schema"}, 200},
+            {{"GET", path + "/vertices/schema"}, 200},
+            {{"GET", path + "/triangles/schema"}, 200},
+            {{"GET", path + "/edges/schema?a=1"}, 400},
+            {{"GET", path + "/faces/schema"}, 404},
+            {{"GET", path + "/vertices/items/1"}, 200},
+            {{"GET", path + "/triangles/items/1-2-3"}, 404},
+            {{"GET", path + "/edges/items/1-2"}, 200},
+            {{"GET", path + "/vertices/items/1?crs=EPSG:1"}, 400},
+            {{"GET", path + "/vertices/items/99"}, 404},
+            {{"GET", "/tins/hill/conformance"}, 200},
+            {{"GET", "/tins/hill/conformance?a=1"}, 400},
+            {{"GET", "/tins/none/conformance"}, 404},
+            {{"GET", "/tins/hill/api"}, 200},
+            {{"GET", "/tins/hill/api?a=1"}, 400},
+            {{"GET", "/tins/none/api"}, 404},
             {{"GET", path + "/vertices/items"}, 200},
             {{"GET", path + "/triangles/items?limit=1"}, 200},
             {{"GET", "/tins/local/collections/triangles/items"}, 200},
@@ -168,15 +245,57 @@ class AnswersTest : public testing::Test {
             {{"GET", path + "/vertices/items?bbox=-82,40,-80,41"}, 200},
             {{"GET", path + "/vertices/items?bbox=1"}, 400},
             {{"GET", path + "/vertices/items?next=abc"}, 400},
-            {{"GET", path + "/edges/items"}, 404},
-            {{"GET", path + "/vertices/items?next=999.1.0"}, 410},
-            {{"GET", path + "/vertices/items?limit=0"}, 422}});
+            {{"GET", path + "/edges/items"}, 200},
+            {{"GET", path + "/faces/items"}, 404},
+            {{"GET", path + "/vertices/items?next=999.1.0.0"}, 410},
+            {{"GET", path + "/vertices/items?limit=0"}, 400}});
+  }
+
+  void ask_vertices() {
+    const std::string items = "/tins/hill/collections/vertices/items", one = items + "/1", geo = "application/geo+json";
+    const std::string any = "If-Match: *\r\n", patch = "application/merge-patch+json";
+    const auto point = [](const std::string& at) {
+      return R"({"type":"Feature","geometry":{"type":"Point","coordinates":[)" + at + R"(]},"properties":{}})";
+    };
+    const std::string inside = point("-80.9997,40.6505,15"), big(3000, ' ');
+    expect({{{"POST", items, geo, inside}, 201},
+            {{"POST", items, geo, "{"}, 400},
+            {{"POST", "/tins/none/collections/vertices/items", geo, inside}, 404},
+            {{"POST", items, geo, inside}, 409},
+            {{"POST", items, geo, big}, 413},
+            {{"POST", items, "text/plain", inside}, 415},
+            {{"POST", items, geo, point("-81,40.65")}, 422},
+            {{"PUT", one, geo, point("-81,40.6502,3"), any}, 204},
+            {{"PUT", one, geo, "{}", any}, 400},
+            {{"PUT", items + "/99", geo, inside, any}, 404},
+            {{"PUT", one, geo, inside, any}, 409},
+            {{"PUT", one, geo, inside, "If-Match: \"x\"\r\n"}, 412},
+            {{"PUT", one, geo, big, any}, 413},
+            {{"PUT", one, "text/plain", inside, any}, 415},
+            {{"PUT", one, geo, point("0,0,3"), any}, 422},
+            {{"PUT", one, geo, inside}, 428},
+            {{"PATCH", one, patch, R"({"properties":{"z":4}})", any}, 204},
+            {{"PATCH", one, patch, R"({"properties":{"z":"4"}})", any}, 400},
+            {{"PATCH", items + "/99", patch, R"({"properties":{"z":4}})", any}, 404},
+            {{"PATCH", one, patch, inside, any}, 409},
+            {{"PATCH", one, patch, inside, "If-Match: \"x\"\r\n"}, 412},
+            {{"PATCH", one, patch, big, any}, 413},
+            {{"PATCH", one, "text/plain", inside, any}, 415},
+            {{"PATCH", one, patch, "{}", any}, 422},
+            {{"PATCH", one, patch, R"({"properties":{"z":4}})"}, 428},
+            {{"DELETE", one}, 428},
+            {{"DELETE", one, "", "", "If-Match: \"x\"\r\n"}, 412},
+            {{"DELETE", one + "?a=1", "", "", any}, 400},
+            {{"DELETE", one, "", "", any}, 204},
+            {{"DELETE", one, "", "", any}, 404}});
   }
 
   void ask_exports() {
     const std::string path = "/tins/grid/export";
     expect({{{"GET", path}, 200},
             {{"GET", path + "?f=geotiff&cell-size=0.5"}, 200},
+            {{"GET", path + "?layer=hillshade&azimuth=90&altitude=30&exaggeration=2"}, 200},
+            {{"GET", path + "?interpolation=natural-neighbour&cell-size=0.5"}, 200},
             {{"GET", path + "?f=geojson"}, 200},
             {{"GET", path + "?f=geojson&collection=vertices&crs=EPSG:32617"}, 200},
             {{"GET", path + "?f=geojson&crs=EPSG:4326"}, 200},
@@ -253,7 +372,10 @@ TEST_F(AnswersTest, EveryDocumentedStatusIsGivenAndFitsItsSchema) {
   ask_edits();
   ask_history();
   ask_elevations();
+  ask_slopes_and_lines();
+  ask_contours_and_volumes();
   ask_collections();
+  ask_vertices();
   ask_exports();
   ask_processes();
   ask_jobs();

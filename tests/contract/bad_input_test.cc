@@ -308,15 +308,14 @@ TEST_F(BadInputTest, ImpossibleExportsAndBoxes) {
            {"bbox=0,0,1,inf", 422, "not-finite"},
            {"crs=EPSG:99999", 422, "invalid-value"},
            {"crs=EPSG", 400, "malformed"},
-           {"collection=edges", 422, "invalid-value"},
+           {"collection=faces", 422, "invalid-value"},
            {"voids=perhaps", 422, "invalid-value"},
            {"bbox=900,900,901,901", 422, "invalid-value"}}) {
     expect_refused({"GET", "/tins/grid/export?" + query}, status, kind);
   }
   expect_refused({"GET", "/tins/hill/export?crs=EPSG:4326"}, 422, "invalid-value", "query:crs");
   expect_refused({"GET", "/tins/open/export"}, 422, "invalid-value");
-  expect_refused({"GET", "/tins/hill/collections/vertices/items?bbox=5,5,1,1"}, 422, "invalid-value",
-                 "query:bbox");
+  expect_refused({"GET", "/tins/hill/collections/vertices/items?bbox=5,5,1,1"}, 400, "malformed", "query:bbox");
 }
 
 }  // namespace

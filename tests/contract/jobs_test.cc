@@ -26,8 +26,10 @@ TEST_F(JobsTest, AnImportAsAJobGivesWhatTheDirectOneGives) {
   EXPECT_EQ(accepted.header("preference-applied"), "respond-async");
   const std::string job = accepted.header("location");
   EXPECT_EQ(finished(job), "successful");
-  const Json result = Json::parse(server_.get(job + "/results").body);
-  EXPECT_EQ(result, server_.tin("later"));
+  Json result = Json::parse(server_.get(job + "/results").body), tin = server_.tin("later");
+  result.erase("links");  // the job does not know how its client calls the server
+  tin.erase("links");
+  EXPECT_EQ(result, tin);
   EXPECT_EQ(result.at("digest"), server_.tin("direct").at("digest"));
   EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
 }

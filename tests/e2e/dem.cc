@@ -34,10 +34,14 @@ class Comparison {
   explicit Comparison(const Dem& dem)
       : dem_(dem), error_(dem.values.size(), std::numeric_limits<double>::infinity()) {}
 
+  /// The pixel nearest to a position.
+  Node place(const nlohmann::json& position) const {
+    return {std::llround(column_of(position)), std::llround(row_of(position)), position.at(2)};
+  }
+
   Node node(const nlohmann::json& position) {
-    const double column = (position.at(0).get<double>() - dem_.geotransform[0]) / dem_.geotransform[1] - 0.5;
-    const double row = (position.at(1).get<double>() - dem_.geotransform[3]) / dem_.geotransform[5] - 0.5;
-    const Node node{std::llround(column), std::llround(row), position.at(2)};
+    const double column = column_of(position), row = row_of(position);
+    const Node node = place(position);
     const bool inside =
         node.column >= 0 && node.row >= 0 && node.column < dem_.width && node.row < dem_.height;
     const int c = static_cast<int>(node.column), r = static_cast<int>(node.row);
@@ -87,6 +91,13 @@ class Comparison {
   }
 
  private:
+  double column_of(const nlohmann::json& position) const {
+    return (position.at(0).get<double>() - dem_.geotransform[0]) / dem_.geotransform[1] - 0.5;
+  }
+  double row_of(const nlohmann::json& position) const {
+    return (position.at(1).get<double>() - dem_.geotransform[3]) / dem_.geotransform[5] - 0.5;
+  }
+
   const Dem& dem_;
   std::vector<double> error_;
   Misses misses_;
@@ -138,6 +149,43 @@ Misses compare(const Dem& dem, const nlohmann::json& triangles, double tolerance
     comparison.take(comparison.node(ring.at(0)), comparison.node(ring.at(1)), comparison.node(ring.at(2)));
   }
   return comparison.result(tolerance);
+}
+
+std::vector<std::pair<int, int>> strictly_inside(const Dem& dem, const nlohmann::json& star) {
+  Comparison pixels(dem);
+  std::vector<std::array<Node, 3>> triangles;
+  std::map<std::array<std::int64_t, 4>, int> sides;
+  for (const auto& feature : star.at("features")) {
+    const auto& ring = feature.at("geometry").at("coordinates").at(0);
+    std::array<Node, 3> t{pixels.place(ring.at(0)), pixels.place(ring.at(1)), pixels.place(ring.at(2))};
+    if (turn(t[0], t[1], t[2].column, t[2].row) < 0) std::swap(t[1], t[2]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] =
+          std::minmax(std::pair(t[i].column, t[i].row), std::pair(t[(i + 1) % 3].column, t[(i + 1) % 3].row));
+      ++sides[{a.first, a.second, b.first, b.second}];
+    }
+    triangles.push_back(t);
+  }
+  const auto on_rim = [&](std::int64_t column, std::int64_t row) {
+    return std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
+      const auto& [at, count] = side;
+      const Node a{at[0], at[1], 0}, b{at[2], at[3], 0};
+      return count == 1 && turn(a, b, column, row) == 0 && std::min(at[0], at[2]) <= column &&
+             column <= std::max(at[0], at[2]) && std::min(at[1], at[3]) <= row &&
+             row <= std::max(at[1], at[3]);
+    });
+  };
+  std::vector<std::pair<int, int>> inside;
+  for (int row = 0; row < dem.height; ++row) {
+    for (int column = 0; column < dem.width; ++column) {
+      const bool covered = std::any_of(triangles.begin(), triangles.end(), [&](const auto& t) {
+        return turn(t[0], t[1], column, row) >= 0 && turn(t[1], t[2], column, row) >= 0 &&
+               turn(t[2], t[0], column, row) >= 0;
+      });
+      if (covered && !on_rim(column, row)) inside.emplace_back(column, row);
+    }
+  }
+  return inside;
 }
 
 }  // namespace tests::e2e

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tests::e2e {
@@ -46,5 +47,9 @@ struct Misses {
 /// Rasterises the triangles of a GeoJSON, in the DEM's CRS, over the DEM's pixel centres. Vertices are
 /// recognised as pixels, so that who lies in which triangle is decided in integers.
 Misses compare(const Dem& dem, const nlohmann::json& triangles, double tolerance);
+
+/// The pixels (column, row) whose centres lie strictly inside the union of the triangles. Requires: the
+/// triangles are those of a star whose centre is a pixel's, their corners pixels.
+std::vector<std::pair<int, int>> strictly_inside(const Dem& dem, const nlohmann::json& star);
 
 }  // namespace tests::e2e

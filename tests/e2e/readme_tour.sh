@@ -17,7 +17,8 @@ cleanup() {
 trap cleanup EXIT
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 
-mkdir -p "$work/build/sample" "$work/data"
+mkdir -p "$work/build/sample" "$work/build/release" "$work/data"
+ln -s "$tinsmith" "$work/build/release/tinsmith"
 cp "$sample" "$work/build/sample/olinda.tif" || fail "there is no sample"
 cd "$work"
 

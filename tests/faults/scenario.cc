@@ -53,7 +53,7 @@ Scenario::Scenario(const std::filesystem::path& folder, const server::store::Sql
   catalogue_ = std::move(*catalogue);
   auto found = catalogue_->find("t");
   if (!found) {
-    found = catalogue_->create({"t", "T", small_terrain(), tin::terrain::Duplicates::kReplace, std::nullopt});
+    found = catalogue_->create({"t", "T", small_terrain(), tin::terrain::Duplicates::kReplace, std::nullopt, {}});
   }
   if (!found) throw std::runtime_error(found.error().message);
   tin_ = *found;
@@ -81,7 +81,7 @@ bool Scenario::edit_once() {
 
 void Scenario::make_and_delete_another() {
   const auto made = catalogue_->create(
-      {"other", "Other", small_terrain(), tin::terrain::Duplicates::kReplace, std::nullopt});
+      {"other", "Other", small_terrain(), tin::terrain::Duplicates::kReplace, std::nullopt, {}});
   if (made) static_cast<void>(catalogue_->remove("other"));
 }
 

@@ -71,7 +71,7 @@ TEST(TogetherTest, ReadersEditorsASimplificationAndCheckpoints) {
   auto store = server::store::open_sqlite_store(folder.path());
   ASSERT_TRUE(store.ok());
   const auto catalogue = std::move(*Catalogue::open(std::move(*store), {}));
-  const auto tin = *catalogue->create({"t", "T", hills(), tin::terrain::Duplicates::kReplace, std::nullopt});
+  const auto tin = *catalogue->create({"t", "T", hills(), tin::terrain::Duplicates::kReplace, std::nullopt, {}});
   std::atomic<bool> stop{false};
   std::vector<std::thread> others, editors;
   others.emplace_back([&] { read_on(*tin, stop); });
@@ -81,7 +81,8 @@ TEST(TogetherTest, ReadersEditorsASimplificationAndCheckpoints) {
   });
   others.emplace_back([&] {
     tin::base::Progress progress;
-    server::app::SimplifyRequest request{tin, {}, std::nullopt};
+    server::app::SimplifyRequest request;
+    request.tin = tin;
     request.options.tolerance = 1;
     EXPECT_TRUE(server::app::simplify_tin(*catalogue, request, progress).ok());
   });

@@ -44,12 +44,17 @@ void Writer::text(std::string_view value) {
   bytes_.append(value);
 }
 
+void Writer::at(exact::Point value) {
+  TIN_CHECK(exact::in_lattice(value.x, value.y));
+  zigzag(std::int64_t{value.x} - previous_.x);
+  zigzag(std::int64_t{value.y} - previous_.y);
+  previous_ = value;
+}
+
 void Writer::placement(const terrain::Placement& placement) {
   TIN_CHECK(storable(placement));
-  zigzag(std::int64_t{placement.at.x} - previous_.x);
-  zigzag(std::int64_t{placement.at.y} - previous_.y);
+  at(placement.at);
   f64(placement.z);
-  previous_ = placement.at;
 }
 
 std::string Writer::finish() {
@@ -63,12 +68,12 @@ Reader::Reader(std::string_view bytes, std::string_view magic, std::uint16_t new
   require(bytes.starts_with(magic), "does not start as one");
   if (!ok()) return;
   bytes_.remove_prefix(magic.size());
-  const auto version = static_cast<std::uint16_t>(fixed(kVersionBytes));
-  if (ok() && version > newest_version) {
-    fail(base::Code::kUnsupported, "format version " + std::to_string(version) + " is newer than " +
+  version_ = static_cast<std::uint16_t>(fixed(kVersionBytes));
+  if (ok() && version_ > newest_version) {
+    fail(base::Code::kUnsupported, "format version " + std::to_string(version_) + " is newer than " +
                                        std::to_string(newest_version) + ", the newest this program reads");
   }
-  require(version >= 1, "format version 0");
+  require(version_ >= 1, "format version 0");
   require(remaining() >= kChecksumBytes, "cut short");
   if (!ok()) return;
   const std::string_view summed = bytes.substr(0, bytes.size() - kChecksumBytes);
@@ -136,10 +141,9 @@ std::string Reader::text() {
   return value;
 }
 
-terrain::Placement Reader::placement() {
+exact::Point Reader::at() {
   const std::int64_t dx = zigzag();
   const std::int64_t dy = zigzag();
-  const double z = f64();
   // Differences of lattice coordinates need 31 bits; larger ones must not reach the sum, which would
   // overflow.
   constexpr std::int64_t kMost = 2 * std::int64_t{exact::kLatticeHalf};
@@ -148,10 +152,17 @@ terrain::Placement Reader::placement() {
   const std::int64_t x = previous_.x + dx;
   const std::int64_t y = previous_.y + dy;
   require(exact::in_lattice(x, y), "a position is outside the lattice");
-  require(std::isfinite(z), "an elevation is not finite");
   if (!ok()) return {};
   previous_ = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
-  return {previous_, z};
+  return previous_;
+}
+
+terrain::Placement Reader::placement() {
+  const exact::Point position = at();
+  const double z = f64();
+  require(std::isfinite(z), "an elevation is not finite");
+  if (!ok()) return {};
+  return {position, z};
 }
 
 std::size_t Reader::count(std::size_t bytes_each) {

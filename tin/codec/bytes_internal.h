@@ -26,6 +26,8 @@ class Writer {
   void varint(std::uint64_t value);
   void zigzag(std::int64_t value);
   void text(std::string_view value);
+  /// A position on the lattice.
+  void at(exact::Point value);
   /// `at` and z. Requires: storable(placement).
   void placement(const terrain::Placement& placement);
   /// Appends the checksum and hands the string out.
@@ -46,6 +48,8 @@ class Reader {
   Reader(std::string_view bytes, std::string_view magic, std::uint16_t newest_version, std::string_view what);
 
   bool ok() const { return failure_.message.empty(); }
+  /// The version that the bytes are of.
+  std::uint16_t version() const { return version_; }
   /// Bytes left before the checksum: bounds every count that is believed.
   std::size_t remaining() const { return bytes_.size(); }
   const base::Error& error() const { return failure_; }
@@ -55,6 +59,7 @@ class Reader {
   std::uint64_t varint();
   std::int64_t zigzag();
   std::string text();
+  exact::Point at();
   terrain::Placement placement();
   /// A varint that says how many items of at least `bytes_each` follow.
   std::size_t count(std::size_t bytes_each);
@@ -72,6 +77,7 @@ class Reader {
   std::string_view what_;
   base::Error failure_;
   exact::Point previous_;
+  std::uint16_t version_ = 0;
 };
 
 }  // namespace tin::codec

@@ -9,7 +9,8 @@ namespace tin::codec {
 namespace {
 
 constexpr std::string_view kMagic = "TNSJ";
-constexpr std::uint16_t kVersion = 1;
+constexpr std::uint16_t kVersion = 2;
+constexpr std::uint16_t kEditVersion = 1;  // edits, which are nearly all, need no cause
 constexpr std::uint8_t kBefore = 1;
 constexpr std::uint8_t kAfter = 2;
 constexpr std::size_t kSmallestStep = 1 + 1 + (1 + 1 + 8);  // parts, id, one placement
@@ -38,11 +39,21 @@ terrain::Step read_step(Reader& in, std::uint64_t previous_id) {
   return step;
 }
 
+terrain::Cause read_cause(Reader& in) {
+  const std::uint8_t cause = in.u8();
+  const bool known = cause == static_cast<std::uint8_t>(terrain::Cause::kRevert) ||
+                     cause == static_cast<std::uint8_t>(terrain::Cause::kSimplification);
+  in.require(known, "an unknown cause of a change");
+  return static_cast<terrain::Cause>(cause);
+}
+
 }  // namespace
 
 std::string encode_change(const terrain::Change& change) {
-  Writer out(kMagic, kVersion);
+  const bool is_edit = change.cause == terrain::Cause::kEdit;
+  Writer out(kMagic, is_edit ? kEditVersion : kVersion);
   out.reserve(32 + 2 * kSmallestStep * change.steps.size());
+  if (!is_edit) out.u8(static_cast<std::uint8_t>(change.cause));
   out.varint(change.steps.size());
   std::uint64_t previous_id = 0;
   for (const terrain::Step& step : change.steps) {
@@ -55,6 +66,7 @@ std::string encode_change(const terrain::Change& change) {
 base::Result<terrain::Change> decode_change(std::string_view bytes) {
   Reader in(bytes, kMagic, kVersion, "journal record");
   terrain::Change change;
+  if (in.version() != kEditVersion) change.cause = read_cause(in);
   const std::size_t count = in.count(kSmallestStep);
   change.steps.reserve(count);
   std::uint64_t previous_id = 0;

@@ -6,14 +6,21 @@
 
 #include "tin/base/check.h"
 #include "tin/codec/bytes_internal.h"
+#include "tin/exact/predicates.h"
 
 namespace tin::codec {
 namespace {
 
+using terrain::Amendments;
 using terrain::SourceGrid;
+using terrain::SourceKind;
 
 constexpr std::string_view kMagic = "TNSC";
-constexpr std::uint16_t kVersion = 1;
+constexpr std::uint16_t kVersion = 2;
+constexpr std::uint16_t kPlainVersion = 1;  // without amendments
+constexpr std::size_t kSmallestPosition = 2;
+constexpr std::size_t kSmallestTriangle = 3 * kSmallestPosition + 1;
+constexpr std::size_t kSmallestOwn = kSmallestPosition + 8;
 constexpr std::size_t kSmallestVertex = 1 + (1 + 1 + 8);  // id, placement
 constexpr std::uint8_t kDuplicatePolicies = 6;
 
@@ -202,10 +209,71 @@ SourceGrid read_grid(Reader& in) {
   return grid;
 }
 
+void write_amendments(Writer& out, const Amendments& amendments) {
+  out.u8(static_cast<std::uint8_t>(amendments.kind()));
+  out.u8(amendments.thinned() ? 1 : 0);
+  const auto touched = amendments.touched();
+  out.varint(touched.size());
+  for (const exact::Point p : touched) out.at(p);
+  out.varint(amendments.areas().size());
+  for (const terrain::EditedTriangle& t : amendments.areas()) {
+    for (const exact::Point p : t.corners) out.at(p);
+    out.u8(t.inner);
+  }
+  out.varint(amendments.own().size());
+  for (const terrain::Placement& sample : amendments.own()) out.placement(sample);
+}
+
+std::vector<exact::Point> read_touched(Reader& in) {
+  std::vector<exact::Point> touched(in.count(kSmallestPosition));
+  for (std::size_t i = 0; i < touched.size() && in.ok(); ++i) {
+    touched[i] = in.at();
+    in.require(i == 0 || touched[i - 1] < touched[i], "touched positions do not ascend");
+  }
+  return touched;
+}
+
+std::vector<terrain::EditedTriangle> read_areas(Reader& in) {
+  std::vector<terrain::EditedTriangle> areas(in.count(kSmallestTriangle));
+  for (terrain::EditedTriangle& t : areas) {
+    if (!in.ok()) break;
+    for (exact::Point& p : t.corners) p = in.at();
+    t.inner = in.u8();
+    in.require(t.inner < 8 && exact::orientation(t.corners[0], t.corners[1], t.corners[2]) > 0,
+               "an edited triangle makes no sense");
+  }
+  return areas;
+}
+
+std::vector<terrain::Placement> read_own(Reader& in) {
+  std::vector<terrain::Placement> own(in.count(kSmallestOwn));
+  for (std::size_t i = 0; i < own.size() && in.ok(); ++i) {
+    own[i] = in.placement();
+    in.require(i == 0 || own[i - 1].at < own[i].at, "people's samples do not ascend");
+  }
+  return own;
+}
+
+Amendments read_amendments(Reader& in, const Checkpoint& checkpoint) {
+  const std::uint8_t kind = in.u8();
+  in.require(kind <= static_cast<std::uint8_t>(SourceKind::kPoints), "an unknown kind of source");
+  const bool raster = kind == static_cast<std::uint8_t>(SourceKind::kRaster);
+  in.require(!raster || checkpoint.grid, "the source is a raster without a grid");
+  const bool thinned = read_flag(in);
+  auto touched = read_touched(in);
+  auto areas = read_areas(in);
+  auto own = read_own(in);
+  Amendments amendments(static_cast<SourceKind>(kind), thinned, std::move(touched), std::move(areas),
+                        std::move(own));
+  in.require(!(amendments == Amendments()), "amendments that are none");
+  return amendments;
+}
+
 }  // namespace
 
 std::string encode_checkpoint(const Checkpoint& checkpoint) {
-  Writer out(kMagic, kVersion);
+  const bool plain = checkpoint.amendments == Amendments();
+  Writer out(kMagic, plain ? kPlainVersion : kVersion);
   out.reserve(1024 + 16 * checkpoint.vertices.size());
   out.varint(checkpoint.revision);
   out.text(checkpoint.digest);
@@ -221,6 +289,7 @@ std::string encode_checkpoint(const Checkpoint& checkpoint) {
   write_vertices(out, checkpoint);
   out.u8(checkpoint.grid ? 1 : 0);
   if (checkpoint.grid) write_grid(out, *checkpoint.grid);
+  if (!plain) write_amendments(out, checkpoint.amendments);
   return out.finish();
 }
 
@@ -238,6 +307,7 @@ base::Result<Checkpoint> decode_checkpoint(std::string_view bytes) {
   if (read_flag(in)) checkpoint.open_resolution = read_open_resolution(in, checkpoint.next_id);
   checkpoint.vertices = read_vertices(in, checkpoint.next_id);
   if (read_flag(in)) checkpoint.grid = std::make_shared<const SourceGrid>(read_grid(in));
+  if (in.version() != kPlainVersion) checkpoint.amendments = read_amendments(in, checkpoint);
   in.finish();
   if (!in.ok()) return in.error();
   return checkpoint;

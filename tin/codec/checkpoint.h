@@ -11,6 +11,7 @@
 
 #include "tin/base/result.h"
 #include "tin/frame/frame.h"
+#include "tin/terrain/amendments.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/source_grid.h"
 #include "tin/terrain/terrain.h"
@@ -20,7 +21,8 @@ namespace tin::codec {
 /// The most pixels that the mask of a source grid may have; larger rasters must be refused on import.
 inline constexpr std::int64_t kMaxGridPixels = std::int64_t{1} << 30;
 
-/// All that brings a terrain back: Terrain::restore(frame, vertices, next_id), then set_source_grid(grid).
+/// All that brings a terrain back: Terrain::restore(frame, vertices, next_id), then set_source_grid(grid) and
+/// set_amendments(amendments).
 struct Checkpoint {
   std::uint64_t revision = 0;
   std::string digest;  // of the terrain that this is the state of
@@ -32,6 +34,7 @@ struct Checkpoint {
   std::optional<std::array<double, 2>> open_resolution;
   std::vector<terrain::Vertex> vertices;  // by ascending id
   std::shared_ptr<const terrain::SourceGrid> grid;
+  terrain::Amendments amendments;
 };
 
 /// Requires: what FORMAT.md demands of a checkpoint (ids ascend and are less than next_id, positions and grid

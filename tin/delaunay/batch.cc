@@ -4,6 +4,7 @@
 
 #include "tin/delaunay/bulk.h"
 #include "tin/delaunay/hilbert_sort.h"
+#include "tin/delaunay/threads.h"
 #include "tin/delaunay/triangulation.h"
 
 namespace tin::delaunay {
@@ -67,6 +68,69 @@ class StarFetcher {
   std::array<Around, kTogether> around_;
 };
 
+/// Stores points along the curve, equal ones once, on several threads.
+class Storing {
+ public:
+  Storing(std::span<const Point> points, std::vector<VertexSlot>& slots, Mesh& mesh, unsigned threads)
+      : points_(points), slots_(slots), mesh_(mesh), threads_(threads), kept_(threads, 0),
+        sorted_(hilbert_sorted(points, threads)) {}
+
+  void run() {
+    mesh_.begin_bulk(sorted_.size());
+    on_threads(threads_, [this](unsigned i) { store(i); });
+    std::size_t count = kept_[0];
+    for (unsigned i = 1; i < threads_; ++i) {
+      if (count != begin(i)) close_gap(i, count);
+      count += kept_[i];
+    }
+    mesh_.begin_bulk(count);
+  }
+
+ private:
+  Point point(std::size_t i) const { return points_[sorted_[i].index]; }
+
+  /// The first of a part: equal points are all in one.
+  std::size_t begin(unsigned part) const {
+    std::size_t i = part_begin(sorted_.size(), part, threads_);
+    while (i > 0 && i < sorted_.size() && point(i) == point(i - 1)) ++i;
+    return i;
+  }
+
+  /// Stores a part as if there had been no equal points before.
+  void store(unsigned part) {
+    const std::size_t first = begin(part), end = begin(part + 1);
+    auto next = static_cast<std::uint32_t>(first);
+    Point last{};
+    for (std::size_t i = first; i < end; ++i) {
+      if (i + 4 * kAhead < end) __builtin_prefetch(&points_[sorted_[i + 4 * kAhead].index]);
+      const Point p = point(i);
+      if (i == first || p != last) mesh_.set_point(VertexSlot(++next), p);
+      slots_[sorted_[i].index] = VertexSlot(next);
+      last = p;
+    }
+    kept_[part] = next - first;
+  }
+
+  /// Moves a part down to behind the first `count` vertices.
+  void close_gap(unsigned part, std::size_t count) {
+    const std::size_t first = begin(part), end = begin(part + 1);
+    for (std::size_t k = 1; k <= kept_[part]; ++k) {
+      mesh_.set_point(VertexSlot(static_cast<std::uint32_t>(count + k)), mesh_.point(VertexSlot(static_cast<std::uint32_t>(first + k))));
+    }
+    for (std::size_t i = first; i < end; ++i) {
+      VertexSlot& slot = slots_[sorted_[i].index];
+      slot = VertexSlot(static_cast<std::uint32_t>(slot.value() - (first - count)));
+    }
+  }
+
+  std::span<const Point> points_;
+  std::vector<VertexSlot>& slots_;
+  Mesh& mesh_;
+  unsigned threads_;
+  std::vector<std::size_t> kept_;  // by part, its different points
+  mesh::PageVector<OnCurve> sorted_;
+};
+
 }  // namespace
 
 bool Triangulation::insert_many(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
@@ -83,21 +147,13 @@ bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>
   threads = static_cast<unsigned>(std::clamp<std::size_t>(points.size() / kWorthAThread, 1, std::max(threads, 1U)));
   Mesh& mesh = base_.mutable_mesh();
   mesh = Mesh();
-  {
-    const auto sorted = hilbert_sorted(points, threads);
-    mesh.begin_bulk(sorted.size());
-    std::uint32_t last = 0;
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-      if (i + 4 * kAhead < sorted.size()) __builtin_prefetch(&points[sorted[i + 4 * kAhead].index]);
-      const Point p = points[sorted[i].index];
-      if (last == 0 || p != mesh.point(VertexSlot(last))) mesh.set_point(VertexSlot(++last), p);
-      slots[sorted[i].index] = VertexSlot(last);
-    }
-    mesh.begin_bulk(last);
-  }
-  if (!build_bulk(mesh, threads, progress)) return false;
-  grid_.rebuild(mesh);
-  hierarchy_.build(mesh);
+  Storing(points, slots, mesh, threads).run();
+  const auto prepare_location = [&] {
+    hierarchy_.build(mesh);
+    grid_.lay_out(mesh, mesh.vertex_slots() - 1);
+  };
+  if (!build_bulk(mesh, threads, progress, prepare_location)) return false;
+  grid_.fill(mesh);
   return true;
 }
 

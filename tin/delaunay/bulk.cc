@@ -21,17 +21,20 @@ using mesh::VertexSlot;
 constexpr std::uint32_t kStride = 8;
 constexpr std::uint32_t kFirstStride = kStride * kStride;
 constexpr std::uint32_t kBetweenReports = 4096;
+constexpr std::uint32_t kAhead = 64;
 
 TriangleSlot first_slot(VertexSlot v) { return TriangleSlot(2 * v.value() - 2); }
 TriangleSlot second_slot(VertexSlot v) { return TriangleSlot(2 * v.value() - 1); }
 
 class Builder {
  public:
-  Builder(Mesh& mesh, base::Progress* progress) : mesh_(mesh), progress_(progress) {}
+  Builder(Mesh& mesh, base::Progress* progress, const std::function<void()>& meanwhile)
+      : mesh_(mesh), progress_(progress), meanwhile_(meanwhile) {}
 
   bool run(unsigned threads) {
     if (!make_first_triangle()) {
       make_line();
+      if (meanwhile_) meanwhile_();
       return true;
     }
     const bool done = insert_all(threads);
@@ -45,15 +48,19 @@ class Builder {
   bool make_first_triangle();
   void make_line();
   bool insert_all(unsigned threads);
+  bool insert_first_round();
+  bool insert_left(std::span<const VertexSlot> left);
   bool insert_in_territory(unsigned thread, unsigned threads, std::vector<VertexSlot>& left);
   template <class Owner>
-  bool insert(Cavity& cavity, VertexSlot v, VertexSlot& last, const Owner& owner);
+  bool insert(Cavity& cavity, VertexSlot v, VertexSlot next, TriangleSlot& start, const Owner& owner);
   bool pause(bool reports);
+  void fetch(std::uint32_t i, std::uint32_t end) const;
 
   bool is_in_first_triangle(VertexSlot v) const { return v == first_[0] || v == first_[1] || v == first_[2]; }
 
   Mesh& mesh_;
   base::Progress* progress_;
+  const std::function<void()>& meanwhile_;
   std::array<VertexSlot, 3> first_{};
   std::uint32_t inserted_ = 0;  // as reported: by the first thread
   double speed_ = 1;            // what each insertion of the first thread stands for
@@ -103,35 +110,58 @@ bool Builder::pause(bool reports) {
   return !progress_->cancelled();
 }
 
-/// Inserts `v`, walking from `last`, which `v` then becomes. False when the owner may not.
+/// Asks for what was made at the i-th vertex in an earlier round, or will be.
+void Builder::fetch(std::uint32_t i, std::uint32_t end) const {
+  if (i >= end) return;
+  mesh_.prefetch(VertexSlot(i));
+  mesh_.prefetch(first_slot(VertexSlot(i)));
+}
+
+/// Inserts `v`, walking from `start`, which then becomes a good place to walk to `next` from. False when the owner may not.
 template <class Owner>
-bool Builder::insert(Cavity& cavity, VertexSlot v, VertexSlot& last, const Owner& owner) {
-  const Point p = mesh_.point(v);
-  const Stop stop = walk(mesh_, p, finite_start(mesh_, mesh_.triangle_at(last)), owner);
+bool Builder::insert(Cavity& cavity, VertexSlot v, VertexSlot next, TriangleSlot& start, const Owner& owner) {
+  const Point p = mesh_.point(v), q = next.value() <= count() ? mesh_.point(next) : p;
+  const Stop stop = walk(mesh_, p, finite_start(mesh_, start), owner);
   if (stop.kind == Stop::Kind::kGaveUp || !cavity.carve(mesh_, p, stop, owner)) return false;
-  cavity.fill(mesh_, v, first_slot(v), second_slot(v));
-  last = v;
+  start = cavity.fill(mesh_, v, first_slot(v), second_slot(v), {std::int64_t{q.x} - p.x, std::int64_t{q.y} - p.y});
   return true;
 }
 
 bool Builder::insert_all(unsigned threads) {
-  Cavity cavity;
-  VertexSlot last = first_[0];
-  for (std::uint32_t i = 1; i <= count(); i += kFirstStride) {
-    if (is_in_first_triangle(VertexSlot(i))) continue;
-    insert(cavity, VertexSlot(i), last, Everywhere{});
-    if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
-  }
+  bool goes_on = true;
+  on_threads(meanwhile_ ? std::min(threads, 2U) : 1, [&](unsigned i) {
+    if (i == 0) goes_on = insert_first_round();
+    if (meanwhile_ && i + 1 == std::min(threads, 2U)) meanwhile_();
+  });
+  if (!goes_on) return false;
   speed_ = threads;
   std::vector<std::vector<VertexSlot>> left(threads);
   std::vector<char> done(threads);
   on_threads(threads, [&](unsigned i) { done[i] = insert_in_territory(i, threads, left[i]) ? 1 : 0; });
   for (unsigned i = 0; i < threads; ++i) {
-    if (done[i] == 0) return false;
-    for (const VertexSlot v : left[i]) {
-      insert(cavity, v, last, Everywhere{});
-      if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
-    }
+    if (done[i] == 0 || !insert_left(left[i])) return false;
+  }
+  return true;
+}
+
+bool Builder::insert_first_round() {
+  Cavity cavity;
+  TriangleSlot start = mesh_.triangle_at(first_[0]);
+  for (std::uint32_t i = 1; i <= count(); i += kFirstStride) {
+    if (is_in_first_triangle(VertexSlot(i))) continue;
+    insert(cavity, VertexSlot(i), VertexSlot(i + kFirstStride), start, Everywhere{});
+    if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
+  }
+  return true;
+}
+
+/// Inserts what a thread has put off: near each other, along the border of its territory.
+bool Builder::insert_left(std::span<const VertexSlot> left) {
+  Cavity cavity;
+  TriangleSlot start = mesh_.triangle_at(first_[0]);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    insert(cavity, left[i], left[i + 1 == left.size() ? i : i + 1], start, Everywhere{});
+    if (++inserted_ % kBetweenReports == 0 && !pause(true)) return false;
   }
   return true;
 }
@@ -143,17 +173,19 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
   };
   const Territory territory{begin(thread), begin(thread + 1)};
   Cavity cavity;
-  VertexSlot last{territory.begin};
+  TriangleSlot start = mesh_.triangle_at(VertexSlot(territory.begin));
   std::uint32_t done = 0;
   for (const std::uint32_t stride : {kStride, 1U}) {
     for (std::uint32_t i = territory.begin; i < territory.end; i += stride) {
+      fetch(i + kAhead * stride, territory.end);
       if ((i - 1) % (stride * kStride) == 0 || is_in_first_triangle(VertexSlot(i))) continue;
+      const VertexSlot v(i), next(i + stride);
       if (threads == 1) {
-        insert(cavity, VertexSlot(i), last, Everywhere{});
-      } else if (!insert(cavity, VertexSlot(i), last, territory)) {
+        insert(cavity, v, next, start, Everywhere{});
+      } else if (!insert(cavity, v, next, start, territory)) {
         // The territory need not be convex: the walk may have left it. Near on the curve is a vertex of the first round.
-        last = VertexSlot(i - (i - 1) % kFirstStride);
-        if (!insert(cavity, VertexSlot(i), last, territory)) left.emplace_back(i);
+        start = mesh_.triangle_at(VertexSlot(i - (i - 1) % kFirstStride));
+        if (!insert(cavity, v, next, start, territory)) left.emplace_back(i);
       }
       if (++done % kBetweenReports != 0) continue;
       if (thread == 0) inserted_ += kBetweenReports;
@@ -165,6 +197,8 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
 
 }  // namespace
 
-bool build_bulk(Mesh& mesh, unsigned threads, base::Progress* progress) { return Builder(mesh, progress).run(threads); }
+bool build_bulk(Mesh& mesh, unsigned threads, base::Progress* progress, const std::function<void()>& meanwhile) {
+  return Builder(mesh, progress, meanwhile).run(threads);
+}
 
 }  // namespace tin::delaunay

@@ -12,6 +12,8 @@
 // ones only links that no other thread writes. The mesh is canonical, so it is the same for any number of threads.
 #pragma once
 
+#include <functional>
+
 #include "tin/base/progress.h"
 #include "tin/mesh/mesh.h"
 
@@ -19,6 +21,8 @@ namespace tin::delaunay {
 
 /// Requires: mesh.begin_bulk() was called and all points are set, distinct, along the Hilbert curve (any other order
 /// gives the same mesh more slowly); threads >= 1. False when `progress` was cancelled: then the mesh is to be thrown away.
-bool build_bulk(mesh::Mesh& mesh, unsigned threads, base::Progress* progress);
+/// `meanwhile`, if given, is called once, on a thread that would have nothing to do during the first round if there are several;
+/// it may read the mesh's points.
+bool build_bulk(mesh::Mesh& mesh, unsigned threads, base::Progress* progress, const std::function<void()>& meanwhile = {});
 
 }  // namespace tin::delaunay

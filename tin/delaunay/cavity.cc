@@ -18,10 +18,9 @@ using mesh::VertexSlot;
 
 namespace {
 
-/// For an infinite triangle with the hull edge q -> r (counter-clockwise around with the infinite vertex): whether the new
-/// point, at the origin, lies beyond that edge or on it. `side` is cross(q, r).
-bool beyond_hull_edge(const Corner& q, const Corner& r, std::int64_t side) {
-  if (side != 0) return side > 0;
+/// Whether the new point, at the origin and in line with the hull edge from q to r, lies on it.
+template <class Seen>
+bool on_hull_edge(const Seen& q, const Seen& r) {
   return q.x * r.x < 0 || (q.x == 0 && q.y * r.y < 0);
 }
 
@@ -39,89 +38,118 @@ bool at_vertex(const Stop& stop, VertexSlot& vertex) {
 
 void Cavity::enlarge() {
   room_ = room_ == 0 ? 64 : 2 * room_;
-  corners_.resize(room_);
-  to_cross_.resize(room_);
-  rim_.resize(room_);
-  triangles_.resize(room_);
+  corners_.resize(room_ + 2);
+  edges_.resize(2 * room_ + 1);
+  rim_.resize(room_ + 2);
+  triangles_.resize(room_ + 2);
 }
 
-void Cavity::start(const Stop& stop) {
+/// Field by field: a copy of the whole would be read from where its parts are still being written.
+inline void Cavity::see(std::int64_t x, std::int64_t y, VertexSlot v, Seen& out) {
+  const std::int64_t finite = v == kInfinite ? 0 : -1;
+  out.x = x &= finite;
+  out.y = y &= finite;
+  out.square = x * x + y * y + finite + 1;
+  out.vertex = v;
+}
+
+void Cavity::start(const Mesh& mesh, const Stop& stop) {
   if (room_ == 0) enlarge();
-  const auto seen = [](const Corner& at) { return Seen{at, at.x * at.x + at.y * at.y}; };
-  corners_[0] = seen(stop.c);
-  corners_[1] = seen(stop.b);
-  corners_[2] = seen(stop.a);
-  to_cross_[0] = {HalfEdge(stop.triangle, next3(stop.apex)), 2, 0, stop.ac};
-  to_cross_[1] = {HalfEdge(stop.triangle, stop.apex), 1, 2, stop.ba};
-  to_cross_[2] = {HalfEdge(stop.triangle, prev3(stop.apex)), 0, 1, stop.cb};
+  see(stop.c.x, stop.c.y, stop.c.vertex, corners_[0]);
+  see(stop.b.x, stop.b.y, stop.b.vertex, corners_[1]);
+  see(stop.a.x, stop.a.y, stop.a.vertex, corners_[2]);
+  const bool finite = stop.kind != Stop::Kind::kOutside;
+  const auto& neighbours = mesh.triangle(stop.triangle).neighbours;
+  const auto beyond = [&](int i) { return neighbours[static_cast<std::size_t>(i)]; };
+  edges_[0] = {finite ? stop.cb : 0, beyond(prev3(stop.apex)), 0, 1};
+  edges_[1] = {stop.ba, beyond(stop.apex), 1, 2};
+  edges_[2] = {finite ? stop.ac : 0, beyond(next3(stop.apex)), 2, 0};
   triangles_[0] = stop.triangle;
-  corner_count_ = to_cross_count_ = 3;
-  rim_count_ = 0;
   triangle_count_ = 1;
 }
 
-/// The perturbed in-circle test of the triangle to, from, apex; for infinite ones whether p is beyond the hull edge.
-inline bool Cavity::in_conflict(const Mesh& mesh, Point p, const Seen& from, const Seen& to, const Seen& apex,
-                                const ToCross& edge, std::int64_t from_apex, std::int64_t apex_to) {
-  if (apex.at.vertex == kInfinite) [[unlikely]] return beyond_hull_edge(to.at, from.at, -edge.cross);
-  if (to.at.vertex == kInfinite) [[unlikely]] return beyond_hull_edge(from.at, apex.at, from_apex);
-  if (from.at.vertex == kInfinite) [[unlikely]] return beyond_hull_edge(apex.at, to.at, apex_to);
-  const Int128 determinant =
-      Int128{to.square} * from_apex + Int128{from.square} * apex_to - Int128{apex.square} * edge.cross;
-  if (determinant != 0) [[likely]] return determinant > 0;
-  return exact::tie_is_inside(mesh.point(to.at.vertex), mesh.point(from.at.vertex), mesh.point(apex.at.vertex), p);
+/// What decides when the determinant of the triangle to, from, apex is zero.
+[[gnu::cold, gnu::noinline]] bool Cavity::tie(const Mesh& mesh, Point p, const Seen& from, const Seen& to, const Seen& apex) {
+  if (apex.vertex == kInfinite) return on_hull_edge(to, from);
+  if (to.vertex == kInfinite) return on_hull_edge(from, apex);
+  if (from.vertex == kInfinite) return on_hull_edge(apex, to);
+  return exact::tie_is_inside(mesh.point(to.vertex), mesh.point(from.vertex), mesh.point(apex.vertex), p);
 }
 
-/// The triangles in conflict hold no vertex inside, so their dual is a tree; crossing edges depth first,
-/// counter-clockwise, meets the rim in order.
+/// The triangles in conflict hold no vertex inside, so their dual is a tree, which is searched breadth first. What a test finds is
+/// hard to foresee, so nothing branches on it: the triangle's two other edges are always written behind the last, and
+/// count if it is in conflict. Edges from one corner come one after the other, each nearer to the rim: the last stays.
 template <class Owner>
 bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& owner) {
   if (!owner.owns(stop.a.vertex) || !owner.owns(stop.b.vertex) || !owner.owns(stop.c.vertex)) return false;
-  start(stop);
-  while (to_cross_count_ > 0) {
-    ToCross edge = to_cross_[--to_cross_count_];
-    for (;;) {
-      const HalfEdge beyond = mesh.twin(edge.edge);
-      const TriangleSlot t = beyond.triangle();
-      const Corner corner = corner_at(mesh, mesh.vertex(t, beyond.index()), p);
-      const Seen apex{corner, corner.x * corner.x + corner.y * corner.y};
-      const Seen &from = corners_[edge.from], &to = corners_[edge.to];
-      const std::int64_t from_apex = cross(from.at, corner), apex_to = cross(corner, to.at);
-      if (!in_conflict(mesh, p, from, to, apex, edge, from_apex, apex_to)) {
-        rim_[rim_count_++] = {beyond, edge.from};
-        break;
-      }
-      if (!owner.owns(corner.vertex)) return false;
-      if (corner_count_ + 2 > room_) enlarge();
-      const auto middle = static_cast<std::uint32_t>(corner_count_++);
-      triangles_[triangle_count_++] = t;
-      corners_[middle] = apex;
-      to_cross_[to_cross_count_++] = {HalfEdge(t, prev3(beyond.index())), middle, edge.to, apex_to};
-      edge = {HalfEdge(t, next3(beyond.index())), edge.from, middle, from_apex};
+  start(mesh, stop);
+  std::size_t count = 1;
+  bool owned = true;
+  Seen* corners = corners_.data();
+  Edge* edges = edges_.data();
+  Rim* rim = rim_.data();
+  TriangleSlot* triangles = triangles_.data();
+  for (std::size_t i = 0; i < 2 * count + 1; ++i) {
+    if (count + 1 > room_) [[unlikely]] {
+      enlarge();
+      corners = corners_.data();
+      edges = edges_.data();
+      rim = rim_.data();
+      triangles = triangles_.data();
     }
+    const Edge edge = edges[i];
+    const TriangleSlot t = edge.beyond.triangle();
+    const int j = edge.beyond.index();
+    const VertexSlot v = mesh.vertex(t, j);
+    const Point q = mesh.point(v);
+    const auto middle = static_cast<std::uint32_t>(count + 2);
+    Seen& apex = corners[middle];
+    see(std::int64_t{q.x} - p.x, std::int64_t{q.y} - p.y, v, apex);
+    const Seen &from = corners[edge.from], &to = corners[edge.to];
+    const std::int64_t from_apex = from.x * apex.y - from.y * apex.x, apex_to = apex.x * to.y - apex.y * to.x;
+    rim[edge.from] = {edge.beyond, edge.to};
+    triangles[count] = t;
+    edges[2 * count + 1] = {from_apex, mesh.twin(t, next3(j)), edge.from, middle};
+    edges[2 * count + 2] = {apex_to, mesh.twin(t, prev3(j)), middle, edge.to};
+    const Int128 determinant =
+        Int128{to.square} * from_apex + Int128{from.square} * apex_to - Int128{apex.square} * edge.cross;
+    bool conflict = determinant > 0;
+    if (determinant == 0) [[unlikely]] conflict = tie(mesh, p, from, to, apex);
+    owned &= !conflict || owner.owns(v);
+    count += conflict ? 1 : 0;
   }
-  return true;
+  triangle_count_ = count;
+  return owned;
 }
 
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const Everywhere&);
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const Territory&);
+template bool Cavity::carve(const Mesh&, Point, const Stop&, const OwnedFrom&);
 
-void Cavity::fill(Mesh& mesh, VertexSlot v, TriangleSlot extra1, TriangleSlot extra2) {
+TriangleSlot Cavity::fill(Mesh& mesh, VertexSlot v, TriangleSlot extra1, TriangleSlot extra2, Direction toward) {
   triangles_[triangle_count_++] = extra1;
   triangles_[triangle_count_++] = extra2;
-  const std::size_t count = rim_count_;
-  VertexSlot from = corners_[rim_[0].from].at.vertex;
-  const VertexSlot first = from;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t next = i + 1 == count ? 0 : i + 1, previous = i == 0 ? count - 1 : i - 1;
-    const VertexSlot to = next == 0 ? first : corners_[rim_[next].from].at.vertex;
-    const TriangleSlot t = triangles_[i];
-    mesh.write_triangle(t, {{v, from, to}, {rim_[i].outer, HalfEdge(triangles_[next], 2), HalfEdge(triangles_[previous], 1)}});
-    mesh.set_twin(rim_[i].outer, HalfEdge(t, 0));
+  const auto side = [&](std::uint32_t corner) { return corners_[corner].x * toward.y - corners_[corner].y * toward.x; };
+  std::uint32_t at = 0;
+  VertexSlot from = corners_[0].vertex;
+  std::int64_t from_side = side(0);
+  TriangleSlot previous = triangles_[triangle_count_ - 1], facing = triangles_[0];
+  for (std::size_t i = 0; i < triangle_count_; ++i) {
+    const Rim rim = rim_[at];
+    const TriangleSlot t = triangles_[i], next = triangles_[i + 1 == triangle_count_ ? 0 : i + 1];
+    at = rim.to;
+    const VertexSlot to = corners_[at].vertex;
+    const std::int64_t to_side = side(at);
+    mesh.write_triangle(t, {{v, from, to}, {rim.beyond, HalfEdge(next, 2), HalfEdge(previous, 1)}});
+    mesh.set_twin(rim.beyond, HalfEdge(t, 0));
     mesh.set_triangle_at(from, t);
+    facing = (from_side >= 0) & (to_side < 0) ? t : facing;
     from = to;
+    from_side = to_side;
+    previous = t;
   }
   mesh.set_triangle_at(v, triangles_[0]);
+  return facing;
 }
 
 }  // namespace tin::delaunay

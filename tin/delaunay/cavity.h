@@ -15,6 +15,10 @@
 
 namespace tin::delaunay {
 
+struct Direction {
+  std::int64_t x = 0, y = 0;
+};
+
 /// Works with buffers of its own, so that repeated insertions allocate nothing. One thread at a time.
 class Cavity {
  public:
@@ -23,8 +27,10 @@ class Cavity {
   template <class Owner>
   bool carve(const mesh::Mesh& mesh, exact::Point p, const Stop& stop, const Owner& owner);
 
-  /// Stars the cavity from `v`, in the slots of the triangles in conflict and these two more.
-  void fill(mesh::Mesh& mesh, mesh::VertexSlot v, mesh::TriangleSlot extra1, mesh::TriangleSlot extra2);
+  /// Stars the cavity from `v`, in the slots of the triangles in conflict and these two more. Returns the new triangle which
+  /// a ray from v in the direction `toward` runs through, where the next walk should start; any if there is none.
+  mesh::TriangleSlot fill(mesh::Mesh& mesh, mesh::VertexSlot v, mesh::TriangleSlot extra1, mesh::TriangleSlot extra2,
+                          Direction toward = {});
 
   /// A triangle in conflict, after carve().
   mesh::TriangleSlot some_triangle() const { return triangles_.front(); }
@@ -32,32 +38,36 @@ class Cavity {
   std::span<const mesh::TriangleSlot> star() const { return {triangles_.data(), triangle_count_}; }
 
  private:
+  /// A corner with the height of its lift. The infinite vertex is seen at the origin, one unit up: in a determinant that leaves
+  /// the orientation of the other two with the new point, which is what decides.
   struct Seen {
-    Corner at;
-    std::int64_t square;
+    std::int64_t x, y, square;
+    mesh::VertexSlot vertex;
   };
-  struct ToCross {
-    mesh::HalfEdge edge;
-    std::uint32_t from, to;  // in corners_
+  /// An edge of the cavity as it was at some time, counter-clockwise around it, with what lies beyond.
+  struct Edge {
     std::int64_t cross;
+    mesh::HalfEdge beyond;
+    std::uint32_t from, to;  // in corners_
   };
+  /// By corner, the last edge that began there.
   struct Rim {
-    mesh::HalfEdge outer;
-    std::uint32_t from;
+    mesh::HalfEdge beyond;
+    std::uint32_t to;
   };
 
-  void start(const Stop& stop);
+  static void see(std::int64_t x, std::int64_t y, mesh::VertexSlot v, Seen& out);
+  static bool tie(const mesh::Mesh& mesh, exact::Point p, const Seen& from, const Seen& to, const Seen& apex);
+  void start(const mesh::Mesh& mesh, const Stop& stop);
   void enlarge();
-  static bool in_conflict(const mesh::Mesh& mesh, exact::Point p, const Seen& from, const Seen& to, const Seen& apex,
-                          const ToCross& edge, std::int64_t from_apex, std::int64_t apex_to);
 
-  // Plain arrays, all of one size that enlarge() doubles before they could overflow: with t triangles in conflict so far,
-  // there are t + 2 corners, and at most as many edges to cross and as many on the rim.
-  std::size_t room_ = 0;
-  std::size_t corner_count_ = 0, to_cross_count_ = 0, rim_count_ = 0, triangle_count_ = 0;
+  // Plain arrays that enlarge() doubles before they could overflow: with t triangles in conflict so far, there are t + 2
+  // corners and 2 t + 1 edges.
+  std::size_t room_ = 0;  // for triangles
+  std::size_t triangle_count_ = 0;
   std::vector<Seen> corners_;
-  std::vector<ToCross> to_cross_;
-  std::vector<Rim> rim_;                         // counter-clockwise
+  std::vector<Edge> edges_;
+  std::vector<Rim> rim_;
   std::vector<mesh::TriangleSlot> triangles_;
 };
 

@@ -18,10 +18,12 @@ constexpr double kVerticesPerCell = 1.5;           // finer is hardly quicker, a
 constexpr std::uint8_t kCrowd = 64;                // vertices in a cell from which on the hierarchy is the quicker way
 constexpr std::uint32_t kCrowded = kNone - 1;      // in a cell without a hint
 
+/// Calls f for each of `count` vertices: all slots, or else the alive ones.
 template <class F>
-void each_vertex(const Mesh& mesh, const F& f) {
+void each_vertex(const Mesh& mesh, std::size_t count, const F& f) {
+  const bool all = count + 1 == mesh.vertex_slots();
   for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
-    if (mesh.is_alive(VertexSlot(i))) f(VertexSlot(i));
+    if (all || mesh.is_alive(VertexSlot(i))) f(VertexSlot(i));
   }
 }
 
@@ -39,15 +41,15 @@ void StartGrid::give_up(Point p) {
 }
 
 /// Lays square cells over the vertices' extent.
-void StartGrid::fit(const Mesh& mesh) {
+void StartGrid::fit(const Mesh& mesh, std::size_t vertices) {
   Point low{exact::kLatticeHalf, exact::kLatticeHalf}, high{-exact::kLatticeHalf, -exact::kLatticeHalf};
-  each_vertex(mesh, [&](VertexSlot v) {
+  each_vertex(mesh, vertices, [&](VertexSlot v) {
     const Point p = mesh.point(v);
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   });
   const double width = double(high.x) - low.x + 1, height = double(high.y) - low.y + 1;
-  const double side = std::max(std::sqrt(width * height * kVerticesPerCell / double(mesh.vertex_count())), 1.0);
+  const double side = std::max(std::sqrt(width * height * kVerticesPerCell / double(vertices)), 1.0);
   x_ = make_axis(low.x, high.x, side);
   y_ = make_axis(low.y, high.y, side);
   reach_ = static_cast<std::int64_t>(4 * side) + 1;
@@ -62,28 +64,33 @@ StartGrid::Axis StartGrid::make_axis(std::int64_t low, std::int64_t high, double
   return axis;
 }
 
-void StartGrid::rebuild(const Mesh& mesh) {
-  outgrown_at_ = std::max<std::size_t>(16, 2 * mesh.vertex_count());
-  too_large_at_ = mesh.vertex_count() / 4;
+void StartGrid::lay_out(const Mesh& mesh, std::size_t vertices) {
   hints_.clear();
-  if (mesh.dimension() < 2) return;
-  fit(mesh);
-  hints_.assign(std::size_t{x_.count} * y_.count, kNone);
-  each_vertex(mesh, [&](VertexSlot v) { hints_[cell(mesh.point(v))] = mesh.triangle_at(v).value(); });
-  // Empty cells take over the hint before them: near enough where cells are empty by chance.
-  std::uint32_t last = kNone;
-  for (std::uint32_t& hint : hints_) last = hint = hint == kNone ? last : hint;
-  mark_crowded_cells(mesh);
-}
-
-void StartGrid::mark_crowded_cells(const Mesh& mesh) {
-  std::vector<std::uint8_t> count(hints_.size(), 0);
-  each_vertex(mesh, [&](VertexSlot v) {
+  if (vertices == 0) return;
+  fit(mesh, vertices);
+  std::vector<std::uint8_t> count(std::size_t{x_.count} * y_.count, 0);
+  each_vertex(mesh, vertices, [&](VertexSlot v) {
     const std::size_t c = cell(mesh.point(v));
     if (count[c] < kCrowd) ++count[c];
   });
-  for (std::size_t c = 0; c < count.size(); ++c) {
-    if (count[c] == kCrowd) hints_[c] = kCrowded;
+  hints_.resize(count.size());
+  std::transform(count.begin(), count.end(), hints_.begin(), [](std::uint8_t n) { return n == kCrowd ? kCrowded : kNone; });
+}
+
+void StartGrid::fill(const Mesh& mesh) {
+  outgrown_at_ = std::max<std::size_t>(16, 2 * mesh.vertex_count());
+  too_large_at_ = mesh.vertex_count() / 4;
+  if (mesh.dimension() < 2) hints_.clear();
+  if (hints_.empty()) return;
+  each_vertex(mesh, mesh.vertex_count(), [&](VertexSlot v) {
+    std::uint32_t& hint = hints_[cell(mesh.point(v))];
+    if (hint != kCrowded) hint = mesh.triangle_at(v).value();
+  });
+  // Empty cells take over the hint before them: near enough where cells are empty by chance.
+  std::uint32_t last = kNone;
+  for (std::uint32_t& hint : hints_) {
+    if (hint == kNone) hint = last;
+    if (hint != kCrowded) last = hint;
   }
 }
 

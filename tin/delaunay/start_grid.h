@@ -16,7 +16,14 @@ class StartGrid {
   /// Remembers `t` for the place `p`. Makes the grid anew when the mesh has outgrown it or left it too large.
   void remember(const mesh::Mesh& mesh, exact::Point p, mesh::TriangleSlot t);
   /// Makes the grid anew, one or two vertices to a cell.
-  void rebuild(const mesh::Mesh& mesh);
+  void rebuild(const mesh::Mesh& mesh) {
+    lay_out(mesh, mesh.vertex_count());
+    fill(mesh);
+  }
+  /// The two halves of that. The first sees only points, so it may run while a mesh is built: then `count` is that of all slots,
+  /// which the mesh does not yet know to be alive. The second needs the triangles.
+  void lay_out(const mesh::Mesh& mesh, std::size_t count);
+  void fill(const mesh::Mesh& mesh);
   /// A walk from the hint for `p` was long: the cell has become crowded, and gives none until the grid is made anew.
   void give_up(exact::Point p);
   /// Whether remember() or a removal has left the grid of the wrong size.
@@ -37,9 +44,8 @@ class StartGrid {
   std::size_t bytes() const { return hints_.capacity() * sizeof(std::uint32_t); }
 
  private:
-  void fit(const mesh::Mesh& mesh);
+  void fit(const mesh::Mesh& mesh, std::size_t count);
   std::size_t cell(exact::Point p) const { return y_.cell(p.y) * x_.count + x_.cell(p.x); }
-  void mark_crowded_cells(const mesh::Mesh& mesh);
 
   /// One axis: `count` cells over [low, low + last].
   struct Axis {

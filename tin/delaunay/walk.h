@@ -56,6 +56,13 @@ struct Territory {
 
 inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
 
+/// The vertices from slot `first` on with the triangles among them, and the infinite vertex: what may change in a piece of a
+/// larger mesh whose other vertices are there for their neighbours' sake only.
+struct OwnedFrom {
+  std::uint32_t first;
+  bool owns(mesh::VertexSlot v) const { return v.value() - 1 >= first - 1; }
+};
+
 /// Walks to `goal` from the finite triangle `start`. Const and safe beside other readers.
 template <class Owner>
 Stop walk(const mesh::Mesh& mesh, exact::Point goal, mesh::TriangleSlot start, const Owner& owner,

@@ -3,6 +3,15 @@
 #include <algorithm>
 
 namespace tin::mesh {
+namespace {
+
+/// Room for one more element: a quarter more when it is full. Twice as much would be quicker by a hair, and wasted for long.
+template <class T>
+void make_room(PageVector<T>& array) {
+  if (array.size() == array.capacity()) array.reserve(array.size() + array.size() / 4 + 16);
+}
+
+}  // namespace
 
 Mesh::Mesh() : points_(1, exact::Point{}), star_(1, kNoTriangle) {}
 
@@ -48,6 +57,8 @@ VertexSlot Mesh::add_vertex(exact::Point p, VertexSlot near) {
     star_[slot] = kNoTriangle;
     return VertexSlot(slot);
   }
+  make_room(points_);
+  make_room(star_);
   points_.push_back(p);
   star_.push_back(kNoTriangle);
   return VertexSlot(static_cast<std::uint32_t>(points_.size() - 1));
@@ -63,6 +74,7 @@ void Mesh::release_vertex(VertexSlot v) {
 TriangleSlot Mesh::claim_triangle(TriangleSlot near) {
   ++triangle_count_;
   if (!free_triangles_.empty()) return TriangleSlot(free_triangles_.take_near(near.value()));
+  make_room(triangles_);
   triangles_.emplace_back();
   return TriangleSlot(static_cast<std::uint32_t>(triangles_.size() - 1));
 }

@@ -28,8 +28,9 @@ using TriangleSlot = base::StrongId<struct TriangleSlotTag, std::uint32_t>;
 inline constexpr VertexSlot kInfinite{0};
 inline constexpr std::uint32_t kNone = 0xffffffffU;
 
-constexpr int next3(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int prev3(int i) { return i == 0 ? 2 : i - 1; }
+// Out of small tables in a word: which corner comes next is as good as random, and a branch on it would often be mispredicted.
+constexpr int next3(int i) { return 0b00'10'01 >> 2 * i & 3; }
+constexpr int prev3(int i) { return 0b01'00'10 >> 2 * i & 3; }
 
 /// An edge as seen from one of its triangles: the edge opposite to that triangle's vertex `index`, running
 /// counter-clockwise, from vertex next3(index) to vertex prev3(index).

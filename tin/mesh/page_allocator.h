@@ -1,5 +1,9 @@
 // Memory for the mesh's big arrays: asked from the system in huge pages where it gives them, since a random access
 // to a large mesh costs a TLB miss per 4 KiB page, and left uninitialised, since bulk building writes every element.
+//
+// Blocks that are given back are kept for the next arrays, up to a limit: a page that is new to the process must be found and
+// cleared by the system, which can take as long as building the mesh on it. The system is told that it may take
+// kept pages away when memory is short.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +14,15 @@
 
 namespace tin::mesh {
 
-/// At least 64-byte aligned; big blocks are whole huge pages. Throws std::bad_alloc.
+/// At least 64-byte aligned; big blocks are whole huge pages. Throws std::bad_alloc. Safe on several threads.
 void* allocate_pages(std::size_t bytes);
 void free_pages(void* memory, std::size_t bytes) noexcept;
 
-/// An allocator over allocate_pages() whose vector::resize() default-initialises: new elements of plain types hold nothing.
+/// What is kept at most, and what is kept now.
+inline constexpr std::size_t kMostPagesKept = std::size_t{512} << 20;
+std::size_t kept_pages() noexcept;
+
+/// An allocator over allocate_pages() whose vector::resize() leaves new elements of plain types as they are: unknown.
 template <class T>
 class PageAllocator {
  public:
@@ -27,9 +35,8 @@ class PageAllocator {
   void deallocate(T* memory, std::size_t count) noexcept { free_pages(memory, count * sizeof(T)); }
 
   template <class U>
-  void construct(U* at) noexcept {
-    static_assert(std::is_trivially_destructible_v<U>);
-    ::new (static_cast<void*>(at)) U;
+  void construct(U*) noexcept {
+    static_assert(std::is_trivially_copyable_v<U>);  // begins to live with the memory
   }
   template <class U, class... Args>
   void construct(U* at, Args&&... args) {

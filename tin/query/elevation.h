@@ -1,4 +1,4 @@
-// Elevations on the surface of a terrain: linear in each triangle.
+// Elevations on the surface of a terrain: linear in each triangle, or by natural neighbours.
 //
 //   ElevationQuery query(terrain, Voids::kKeep);
 //   if (auto found = query.at({120, 340})) use(found->z);
@@ -6,18 +6,17 @@
 
 #include <array>
 #include <optional>
-#include <span>
 
 #include "tin/delaunay/triangulation.h"
+#include "tin/query/natural_neighbours.h"
+#include "tin/query/voids.h"
 #include "tin/terrain/terrain.h"
 
 namespace tin::query {
 
-/// What stands where the source raster had nodata: nothing (kKeep), or the surface across (kFill).
-///
-/// A position is void when the source cell that holds it was void and no vertex of its triangle stands in a
-/// void cell: whoever puts a vertex into a void says that there is terrain around it.
-enum class Voids { kKeep, kFill };
+/// kLinear: the plane of the triangle. kNaturalNeighbour: Sibson's weights, which round the surface off (its slope jumps at
+/// the vertices only) and never leave the range of the neighbours' elevations.
+enum class Interpolation { kLinear, kNaturalNeighbour };
 
 struct Elevation {
   double z = 0;  // in the frame's vertical unit
@@ -29,20 +28,24 @@ struct Elevation {
 /// must not change meanwhile. One thread; make one query object per thread.
 class ElevationQuery {
  public:
-  ElevationQuery(const terrain::Terrain& terrain, Voids voids) : terrain_(terrain), voids_(voids) {}
+  ElevationQuery(const terrain::Terrain& terrain, Voids voids, Interpolation by = Interpolation::kLinear)
+      : terrain_(terrain), voids_(terrain, voids), by_(by), neighbours_(terrain.mesh()) {}
 
-  /// The elevation at `p`: a vertex's own there, else linear in the triangle, or, when all vertices are
-  /// collinear, along their line; nothing elsewhere and in voids. Equal for every history of the same set. On
+  /// The elevation at `p`: a vertex's own there, else interpolated, or, when all vertices are
+  /// collinear, linear along their line; nothing elsewhere and in voids. Equal for every history of the same set. On
   /// an edge either of the two triangles is named, the same one for the same mesh. Cost: the walk, expected
-  /// O(1) for coherent positions.
+  /// O(1) for coherent positions; by natural neighbours also their number, about six.
   std::optional<Elevation> at(exact::Point p);
 
  private:
   std::optional<Elevation> on_line(exact::Point p) const;
   bool is_void(exact::Point p, std::span<const mesh::VertexSlot> corners) const;
+  double by_neighbours(exact::Point p, mesh::TriangleSlot t);
 
   const terrain::Terrain& terrain_;
-  Voids voids_;
+  VoidMask voids_;
+  Interpolation by_;
+  NaturalNeighbours neighbours_;
   mesh::TriangleSlot last_{mesh::kNone};
 };
 

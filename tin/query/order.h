@@ -43,4 +43,33 @@ class TriangleWalk {
   std::size_t at_ = 0;
 };
 
+/// An edge between two finite vertices, the smaller id first.
+struct EdgeView {
+  std::array<terrain::VertexId, 2> ids;
+  std::array<mesh::VertexSlot, 2> slots;
+  bool hull = false;  // one of its sides is outside
+};
+
+/// The edges whose smaller vertex id is `vertex`, ordered by the other; also of vertices that stand in a line.
+void edges_of(const terrain::Terrain& terrain, terrain::VertexId vertex, std::vector<EdgeView>& out);
+
+/// How many edges there are, O(1): Euler's formula.
+std::size_t edge_count(const terrain::Terrain& terrain);
+
+/// Walks all edges, by smaller id, then the other.
+class EdgeWalk {
+ public:
+  EdgeWalk(const terrain::Terrain& terrain, TriangleCursor from);
+  /// The next edge, nothing after the last.
+  std::optional<EdgeView> next();
+  /// Where to go on later. Also before the first next().
+  TriangleCursor cursor() const;
+
+ private:
+  const terrain::Terrain& terrain_;
+  std::optional<terrain::VertexId> vertex_;
+  std::vector<EdgeView> batch_;
+  std::size_t at_ = 0;
+};
+
 }  // namespace tin::query

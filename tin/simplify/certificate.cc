@@ -1,109 +1,127 @@
 #include "tin/simplify/certificate.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "tin/base/check.h"
+#include "tin/delaunay/walk.h"
 #include "tin/simplify/facet.h"
+#include "tin/simplify/tiles.h"
 
 namespace tin::simplify {
 
-using delaunay::Location;
+using delaunay::Stop;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
-using terrain::Terrain;
 
 namespace {
 
+/// Samples that one thread measures at a time; the sums of squares are put together in this order.
+constexpr SampleIndex kStretch = 1U << 16;
+constexpr SampleIndex kTogether = 1U << 10;
+
+struct Measured {
+  std::size_t samples = 0, on_vertices = 0;
+  double worst_error = 0, squares = 0;
+  SampleIndex worst = 0;
+  bool within = true;
+  std::array<std::size_t, kBins> histogram{};
+};
+
 class Certifier {
  public:
-  Certifier(const Terrain& source, const WorkingTin& result, double tolerance)
-      : source_(source),
-        result_(result),
+  Certifier(const Patch& result, double tolerance, double bin)
+      : result_(result),
         tolerance_(tolerance),
-        is_removed_(source.mesh().vertex_slots(), false),
-        at_(result.mesh().triangle_at(mesh::kInfinite)),
+        bin_(bin),
+        at_(delaunay::finite_start(result.mesh(), result.mesh().triangle_at(mesh::kInfinite))),
         facet_(facet_over(at_)) {}
 
-  void look_up(VertexSlot sample) {
-    const exact::Point p = source_.mesh().point(sample);
-    const Location where = result_.triangulation().locate_from(p, at_);
-    TIN_CHECK(where.kind != Location::Kind::kOutsideHull);
-    if (where.triangle != at_) facet_ = facet_over(where.triangle);
-    at_ = where.triangle;
-    if (where.kind == Location::Kind::kOnVertex) {
-      TIN_CHECK(result_.site(where.vertex).z == source_.z(sample));
-      ++kept_;
-      return;
-    }
-    is_removed_[sample.value()] = true;
-    const auto weights = facet_.weights(p);
-    TIN_CHECK(weights.has_value());
-    const auto verdict = facet_.judge(*weights, source_.z(sample), tolerance_);
-    within_ = within_ && verdict.within;
-    squares_ += verdict.error * verdict.error;
-    if (verdict.error < worst_error_ || verdict.error == 0) return;
-    if (verdict.error == worst_error_ && !(p < source_.mesh().point(worst_))) return;
-    worst_error_ = verdict.error;
-    worst_ = sample;
-  }
-
-  Certificate result(std::size_t samples) const {
-    TIN_CHECK(kept_ == result_.vertex_count());
-    Certificate out;
-    out.max_error = worst_error_;
-    if (worst_error_ > 0)
-      out.worst = Worst{source_.id_of(worst_), source_.mesh().point(worst_), worst_error_};
-    out.rmse = std::sqrt(squares_ / static_cast<double>(samples));
-    out.within = within_;
-    out.removed.reserve(samples - kept_);
-    const terrain::IdMap& ids = source_.ids();
-    for (auto id = ids.first_from(terrain::VertexId(0)); id;
-         id = ids.first_from(terrain::VertexId(id->value() + 1))) {
-      if (is_removed_[ids.slot_of(*id)->value()]) out.removed.push_back(*id);
+  Measured measure(SampleIndex begin, SampleIndex end) {
+    Measured out;
+    for (; begin < end; begin += std::min(end - begin, kTogether)) {
+      sites_.clear();
+      result_.samples().sites(begin, begin + std::min(end - begin, kTogether), sites_);
+      for (const Site& site : sites_) look_up(site, out);
     }
     return out;
   }
 
  private:
-  /// For an infinite triangle: over the finite one behind its hull edge.
+  void look_up(const Site& sample, Measured& out) {
+    ++out.samples;
+    auto weights = facet_.weights(sample.at);
+    if (!weights) {
+      const Stop stop = delaunay::walk(result_.mesh(), sample.at, at_, delaunay::Everywhere{});
+      TIN_CHECK(stop.kind == Stop::Kind::kInside);
+      at_ = stop.triangle;
+      facet_ = facet_over(at_);
+      weights = facet_.weights(sample.at);
+      TIN_CHECK(weights.has_value());
+    }
+    const auto verdict = facet_.judge(*weights, sample.z, tolerance_);
+    if (is_corner(sample)) ++out.on_vertices;
+    out.within = out.within && verdict.within;
+    const double bins = bin_ > 0 ? verdict.error / bin_ : 0;
+    ++out.histogram[bins < kBins ? static_cast<std::size_t>(bins) : kBins - 1];
+    out.squares += verdict.error * verdict.error;
+    if (verdict.error <= out.worst_error) return;
+    out.worst_error = verdict.error;
+    out.worst = sample.sample;
+  }
+
+  bool is_corner(const Site& sample) const {
+    const auto& v = result_.mesh().triangle(at_).vertices;
+    return std::any_of(v.begin(), v.end(), [&](VertexSlot corner) { return result_.site(corner).at == sample.at; });
+  }
+
   Facet facet_over(TriangleSlot t) const {
-    const mesh::Mesh& mesh = result_.mesh();
-    const TriangleSlot finite =
-        mesh.is_infinite(t) ? mesh.twin(t, mesh.index_of(t, mesh::kInfinite)).triangle() : t;
-    const auto& v = mesh.triangle(finite).vertices;
+    const auto& v = result_.mesh().triangle(t).vertices;
     const auto corner = [this](VertexSlot slot) {
       return Facet::Corner{result_.site(slot).at, result_.site(slot).z};
     };
     return {corner(v[0]), corner(v[1]), corner(v[2])};
   }
 
-  const Terrain& source_;
-  const WorkingTin& result_;
-  double tolerance_;
-  std::vector<bool> is_removed_;  // by slot of the source
-  TriangleSlot at_;               // of the sample before: the next is often near
-  Facet facet_;                   // over it
-  std::size_t kept_ = 0;
-  double worst_error_ = 0, squares_ = 0;
-  VertexSlot worst_{mesh::kNone};
-  bool within_ = true;
+  const Patch& result_;
+  double tolerance_, bin_;
+  TriangleSlot at_;  // of the sample before: the next is often near
+  Facet facet_;      // over it
+  std::vector<Site> sites_;
 };
+
+void put_together(Certificate& sum, const Measured& part, double& squares, std::size_t& on_vertices) {
+  sum.samples += part.samples;
+  on_vertices += part.on_vertices;
+  squares += part.squares;
+  sum.within = sum.within && part.within;
+  for (std::size_t i = 0; i < kBins; ++i) sum.histogram[i] += part.histogram[i];
+  if (part.worst_error <= sum.max_error) return;
+  sum.max_error = part.worst_error;
+  sum.worst = part.worst;
+}
 
 }  // namespace
 
-std::optional<Certificate> certify(const Terrain& source, const WorkingTin& result, double tolerance,
+std::optional<Certificate> certify(const Patch& result, double tolerance, double bin, unsigned threads,
                                    const Phase& phase) {
-  Certifier certifier(source, result, tolerance);
-  const std::uint32_t slots = source.mesh().vertex_slots();
-  for (std::uint32_t i = 1; i < slots; ++i) {
-    if (i % 4096 == 0) {
-      if (phase.cancelled()) return std::nullopt;
-      phase.report(static_cast<double>(i) / slots);
-    }
-    if (source.mesh().is_alive(VertexSlot(i))) certifier.look_up(VertexSlot(i));
-  }
-  if (phase.cancelled()) return std::nullopt;
-  return certifier.result(source.vertex_count());
+  const SampleIndex end = result.samples().end();
+  const std::size_t stretches = (std::size_t{end} + kStretch - 1) / kStretch;
+  std::vector<Measured> parts(stretches);
+  const bool finished = for_each_tile(stretches, threads, phase, [&](std::size_t i) {
+    const auto begin = static_cast<SampleIndex>(i * kStretch);
+    parts[i] = Certifier(result, tolerance, bin).measure(begin, std::min(end - begin, kStretch) + begin);
+  });
+  if (!finished) return std::nullopt;
+  Certificate out;
+  double squares = 0;
+  std::size_t on_vertices = 0;
+  for (const Measured& part : parts) put_together(out, part, squares, on_vertices);
+  TIN_CHECK(on_vertices == result.mesh().vertex_count());
+  out.rmse = std::sqrt(squares / static_cast<double>(out.samples));
+  return out;
 }
 
 }  // namespace tin::simplify

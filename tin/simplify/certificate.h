@@ -1,26 +1,29 @@
 // The proof at the end: where each sample lies in the result, and how far from it.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "tin/simplify/patch.h"
 #include "tin/simplify/phase.h"
 #include "tin/simplify/simplify.h"
-#include "tin/simplify/working_tin.h"
 
 namespace tin::simplify {
 
 struct Certificate {
-  std::vector<terrain::VertexId> removed;  // samples that are no vertices, ascending
+  std::size_t samples = 0;
   double max_error = 0;
-  std::optional<Worst> worst;
+  std::optional<SampleIndex> worst;  // nothing when max_error is 0
   double rmse = 0;
-  bool within = true;  // exact: every sample is within the tolerance asked about
+  std::array<std::size_t, kBins> histogram{};  // as in Report
+  bool within = true;                  // exact: every sample is within the tolerance asked about
 };
 
-/// Looks every vertex of `source` up in `result` and measures, sharing with the way there only the exact
-/// judgement of a single sample. Requires: dimension 2; tolerance finite and >= 0. Nothing when cancelled.
-std::optional<Certificate> certify(const terrain::Terrain& source, const WorkingTin& result, double tolerance,
+/// Looks every sample up in `result` and measures, sharing with the way there only the exact judgement of a single
+/// sample. `bin`: width of the histogram's bins. Requires: dimension 2, all of it owned; tolerance finite and >= 0.
+/// Nothing when cancelled.
+std::optional<Certificate> certify(const Patch& result, double tolerance, double bin, unsigned threads,
                                    const Phase& phase);
 
 }  // namespace tin::simplify

@@ -5,19 +5,20 @@
 #include <optional>
 #include <vector>
 
-#include "tin/removal/remover.h"
+#include "tin/simplify/patch.h"
 #include "tin/simplify/phase.h"
-#include "tin/simplify/working_tin.h"
+#include "tin/simplify/trial.h"
 
 namespace tin::simplify {
 
-/// Removes vertices until each one left is needed. A vertex's cost is the largest error over its star once it
-/// is gone: known from a trial deletion, and valid until its star changes.
+/// Removes vertices of a patch until each one left whose star is its own is needed. A vertex's cost is the largest
+/// error over its star once it is gone: known from a trial deletion, and valid until its star changes.
 class Decimation {
  public:
-  /// Where samples are over the tolerance (finite, >= 0) already, vertices around them stay. Borrows `tin`.
-  Decimation(WorkingTin& tin, double tolerance) : tin_(tin), tolerance_(tolerance) {}
+  /// Where samples are over the tolerance (finite, >= 0) already, vertices around them stay. Borrows `patch`.
+  Decimation(Patch& patch, double tolerance) : patch_(patch), tolerance_(tolerance) {}
 
+  /// Tries the vertices that are not settled, and settles those that stay.
   /// Ensures: no sample comes over the tolerance. False when cancelled.
   bool run(const Phase& phase);
 
@@ -33,11 +34,10 @@ class Decimation {
   };
   bool queue_all(const Phase& phase);
   void queue(mesh::VertexSlot v);
-  std::optional<double> cost_of_removing(mesh::VertexSlot v);
 
-  WorkingTin& tin_;
+  Patch& patch_;
   double tolerance_;
-  removal::Remover trial_;
+  Trial trial_;
   std::vector<Candidate> heap_;
   std::vector<std::uint32_t> stamps_;  // of each vertex: candidates with an older one are void
   std::vector<mesh::HalfEdge> link_;

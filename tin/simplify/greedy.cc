@@ -3,55 +3,66 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tin/base/check.h"
+
 namespace tin::simplify {
 
 using mesh::TriangleSlot;
 
-Greedy::End Greedy::run(std::size_t budget, const Phase& phase) {
-  if (!queue_all(phase)) return End::kCancelled;
+Greedy::End Greedy::run(std::size_t budget, const Phase& phase, const std::function<bool(TriangleSlot)>& suspect) {
+  if (!queue_all(phase, suspect)) return End::kCancelled;
   double progress = 0;
   for (;;) {
     const auto worst = take_worst();
     if (phase.cancelled()) return End::kCancelled;
     note_state(worst ? worst->error : 0);
     if (!worst) return End::kTargetMet;
-    if (tin_.vertex_count() >= budget) return End::kBudgetSpent;
-    const TriangleSlot t(worst->triangle);
-    inserted_.push_back(tin_.insert(worst->sample, tin_.mesh().vertex(t, 0)));
-    for (const TriangleSlot fresh : tin_.fresh_triangles()) queue(fresh);
+    if (patch_.mesh().vertex_count() >= budget) return End::kBudgetSpent;
+    const auto v = patch_.insert(patch_.samples().site(worst->sample), TriangleSlot(worst->triangle));
+    if (!v) continue;
+    inserted_.push_back(*v);
+    for (const TriangleSlot fresh : patch_.fresh()) queue(fresh);
     if (inserted_.size() % 256 != 0) continue;
     // On terrain the number of vertices grows about as error^-1.25.
     const double by_error = worst->error > 0 ? std::pow(target_ / worst->error, 1.25) : 0;
-    const double by_count = static_cast<double>(tin_.vertex_count()) / static_cast<double>(budget);
+    const double by_count = static_cast<double>(patch_.mesh().vertex_count()) / static_cast<double>(budget);
     progress = std::clamp(std::max(by_error, by_count), progress, 1.0);
     phase.report(progress);
   }
 }
 
-bool Greedy::queue_all(const Phase& phase) {
-  for (std::uint32_t i = 0; i < tin_.mesh().triangle_slots(); ++i) {
+bool Greedy::queue_all(const Phase& phase, const std::function<bool(TriangleSlot)>& suspect) {
+  const std::uint32_t slots = patch_.mesh().triangle_slots();
+  wishes_.assign(slots, {});
+  for (std::uint32_t i = 0; i < slots; ++i) {
     if (phase.cancelled()) return false;
-    if (tin_.mesh().is_alive(TriangleSlot(i))) queue(TriangleSlot(i));
+    if (suspect && !suspect(TriangleSlot(i))) continue;
+    if (patch_.owns(TriangleSlot(i))) queue(TriangleSlot(i));
   }
   return true;
 }
 
 void Greedy::queue(TriangleSlot t) {
-  if (t.value() >= stamps_.size()) stamps_.resize(t.value() + 1, 0);
-  const std::uint32_t stamp = ++stamps_[t.value()];
-  if (tin_.mesh().is_infinite(t)) return;
-  const Scan scan = tin_.scan(t, target_, Depth::kWorst);
+  if (t.value() >= wishes_.size()) wishes_.resize(t.value() + 1);
+  wishes_[t.value()] = {};
+  if (patch_.mesh().is_infinite(t)) return;
+  const Scan scan = patch_.scan(t, target_, Depth::kWorst);
   if (!scan.over) return;
-  heap_.push_back({scan.error, scan.sample, t.value(), stamp});
+  wishes_[t.value()] = {scan.error, scan.sample};
+  heap_.push_back({scan.error, scan.sample, t.value()});
   std::push_heap(heap_.begin(), heap_.end());
 }
 
+/// A triangle's wish is granted or refused once.
 std::optional<Greedy::Candidate> Greedy::take_worst() {
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end());
     const Candidate candidate = heap_.back();
     heap_.pop_back();
-    if (stamps_[candidate.triangle] == candidate.stamp) return candidate;
+    Wish& wish = wishes_[candidate.triangle];
+    if (wish.sample != candidate.sample || wish.error != candidate.error) continue;
+    wish = {};
+    return candidate;
   }
   return std::nullopt;
 }
@@ -63,7 +74,7 @@ void Greedy::note_state(double error) {
 }
 
 double Greedy::return_to_best() {
-  for (; inserted_.size() > best_count_; inserted_.pop_back()) tin_.remove(inserted_.back());
+  for (; inserted_.size() > best_count_; inserted_.pop_back()) TIN_CHECK(patch_.remove(inserted_.back()));
   return best_error_;
 }
 

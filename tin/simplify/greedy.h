@@ -3,12 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "tin/simplify/patch.h"
 #include "tin/simplify/phase.h"
-#include "tin/simplify/working_tin.h"
 
 namespace tin::simplify {
 
@@ -18,11 +19,13 @@ class Greedy {
   static constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
   enum class End { kTargetMet, kBudgetSpent, kCancelled };
 
-  /// Requires: target finite and >= 0. Borrows `tin`.
-  Greedy(WorkingTin& tin, double target) : tin_(tin), target_(target) {}
+  /// Requires: target finite and >= 0. Borrows `patch`.
+  Greedy(Patch& patch, double target) : patch_(patch), target_(target) {}
 
-  /// Inserts until every sample is within the target (exactly), or `budget` vertices stand.
-  End run(std::size_t budget, const Phase& phase);
+  /// Inserts until every sample over the patch's own triangles is within the target (exactly), but for those that
+  /// could not become vertices without touching foreign triangles; or until `budget` vertices stand. With `suspect`, only the
+  /// triangles that it says true of are asked at first, the others being known to be within.
+  End run(std::size_t budget, const Phase& phase, const std::function<bool(mesh::TriangleSlot)>& suspect = {});
 
   /// After kBudgetSpent: removes again what came after the state of the least largest error, since that error
   /// does not fall steadily. Returns it, rounded.
@@ -32,21 +35,27 @@ class Greedy {
   struct Candidate {
     double error;
     SampleIndex sample;
-    std::uint32_t triangle, stamp;
+    std::uint32_t triangle;
     /// For a heap with the largest error on top, then the smallest sample.
     friend bool operator<(const Candidate& a, const Candidate& b) {
       return a.error != b.error ? a.error < b.error : a.sample > b.sample;
     }
   };
-  bool queue_all(const Phase& phase);
+  static constexpr SampleIndex kNoSample = std::numeric_limits<SampleIndex>::max();
+
+  bool queue_all(const Phase& phase, const std::function<bool(mesh::TriangleSlot)>& suspect);
   void queue(mesh::TriangleSlot t);
   std::optional<Candidate> take_worst();
   void note_state(double error);
 
-  WorkingTin& tin_;
+  Patch& patch_;
   double target_;
   std::vector<Candidate> heap_;
-  std::vector<std::uint32_t> stamps_;  // of each triangle: candidates with an older one are void
+  struct Wish {
+    double error = 0;
+    SampleIndex sample = kNoSample;
+  };
+  std::vector<Wish> wishes_;  // of each triangle: other candidates are void
   std::vector<mesh::VertexSlot> inserted_;
   double best_error_ = std::numeric_limits<double>::infinity();
   std::size_t best_count_ = 0;  // of inserted_

@@ -8,6 +8,7 @@
 
 #include "tin/simplify/ranking.h"
 #include "tin/simplify/spans.h"
+#include "tin/simplify/whole_scan.h"
 
 namespace tin::simplify {
 
@@ -38,6 +39,15 @@ std::pair<std::int32_t, std::int32_t> widened(double from, double to, std::int32
   const double low = std::floor(std::min(from, to)) - 1, high = std::ceil(std::max(from, to)) + 1;
   return {static_cast<std::int32_t>(std::clamp(low, 0.0, static_cast<double>(count))),
           static_cast<std::int32_t>(std::clamp(high, -1.0, static_cast<double>(count) - 1))};
+}
+
+/// The cells whose centres `origin + i * step` lie in low..high: the first and the last.
+std::pair<std::int32_t, std::int32_t> inside(std::int64_t low, std::int64_t high, std::int64_t origin, std::int64_t step,
+                                             std::int32_t count) {
+  if (step < 0) return inside(-high, -low, -origin, -step, count);
+  const auto floor_div = [step](std::int64_t a) { return a / step - (a % step < 0 ? 1 : 0); };
+  return {static_cast<std::int32_t>(std::clamp<std::int64_t>(-floor_div(origin - low), 0, count)),
+          static_cast<std::int32_t>(std::clamp<std::int64_t>(floor_div(high - origin), -1, count - 1))};
 }
 
 }  // namespace
@@ -89,9 +99,66 @@ Site GridSamples::site(SampleIndex sample) const {
   return {grid_.centre(column, row), column, row, height(sample).value(), sample};
 }
 
-SampleIndex GridSamples::find(Point p) const {
-  if (const auto cell = grid_.cell_centred_at(p)) return index(cell->column, cell->row);
-  return others_.find(p);
+void GridSamples::sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const {
+  const auto width = static_cast<SampleIndex>(grid_.width);
+  const SampleIndex cells = std::min(end, static_cast<SampleIndex>(cell_count()));
+  auto column = static_cast<std::int32_t>(begin % width), row = static_cast<std::int32_t>(begin / width);
+  for (SampleIndex sample = begin; sample < cells; ++sample) {
+    const double z = height_or_nan(sample);
+    if (!std::isnan(z)) out.push_back({grid_.centre(column, row), column, row, z, sample});
+    if (++column < grid_.width) continue;
+    column = 0;
+    ++row;
+  }
+  for (SampleIndex sample = std::max(begin, cells); sample < end; ++sample) out.push_back(others_.site(sample));
+}
+
+Point GridSamples::position(SampleIndex sample) const {
+  if (sample >= cell_count()) return others_.position(sample);
+  const auto width = static_cast<SampleIndex>(grid_.width);
+  return grid_.centre(static_cast<std::int32_t>(sample % width), static_cast<std::int32_t>(sample / width));
+}
+
+std::optional<SampleIndex> GridSamples::find(Point p) const {
+  const auto cell = grid_.cell_centred_at(p);
+  if (!cell) return others_.find(p);
+  const SampleIndex found = index(cell->column, cell->row);
+  return exists(found) ? std::optional(found) : std::nullopt;
+}
+
+std::optional<SampleIndex> GridSamples::neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const {
+  if (sample >= cell_count()) return std::nullopt;
+  const auto width = static_cast<SampleIndex>(grid_.width);
+  const std::int32_t column = static_cast<std::int32_t>(sample % width) + columns,
+                     row = static_cast<std::int32_t>(sample / width) + rows;
+  if (column < 0 || row < 0 || column >= grid_.width || row >= grid_.height) return std::nullopt;
+  const SampleIndex found = index(column, row);
+  return height(found) ? std::optional(found) : std::nullopt;
+}
+
+Extent GridSamples::extent() const {
+  const Point first = grid_.centre(0, 0), last = grid_.centre(grid_.width - 1, grid_.height - 1);
+  Extent out{{{std::min(first.x, last.x), std::min(first.y, last.y)}, {std::max(first.x, last.x), std::max(first.y, last.y)}},
+             std::abs(grid_.dx), std::abs(grid_.dy), cell_count()};
+  if (others_.empty()) return out;
+  const terrain::Box box = others_.extent().box;
+  out.box.min = {std::min(out.box.min.x, box.min.x), std::min(out.box.min.y, box.min.y)};
+  out.box.max = {std::max(out.box.max.x, box.max.x), std::max(out.box.max.y, box.max.y)};
+  return out;
+}
+
+/// The first and the last sample of each row.
+void GridSamples::outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const {
+  const auto [first_column, last_column] = inside(box.min.x, box.max.x, grid_.x0, grid_.dx, grid_.width);
+  const auto [first_row, last_row] = inside(box.min.y, box.max.y, grid_.y0, grid_.dy, grid_.height);
+  for (std::int32_t row = first_row; row <= last_row; ++row) {
+    std::int32_t first = first_column, last = last_column;
+    while (first <= last && !height(index(first, row))) ++first;
+    while (first < last && !height(index(last, row))) --last;
+    if (first <= last) out.push_back(index(first, row));
+    if (first < last) out.push_back(index(last, row));
+  }
+  others_.outermost(box, out);
 }
 
 // Whole heights
@@ -103,12 +170,13 @@ bool WholeGridSamples::can_hold(const terrain::SourceGrid& grid, int shift, doub
   return shift <= kMostShift && height < kMostHeight && cells < 0x1p+29 && 8 * height * cells < 0x1p+61;
 }
 
-WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift,
+WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest,
                                    std::vector<Facet::Corner> others, const base::Progress* progress)
     : GridSamples(grid, std::move(others), progress),
       shift_(shift),
       scale_(std::ldexp(1.0, shift)),
-      heights_(cell_count(), kVoid) {}
+      largest_(std::ldexp(largest, shift)),
+      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid) {}
 
 Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                   Depth depth) const {
@@ -116,35 +184,28 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
                      cy = c.row - a.row;
   const std::int64_t turn = bx * cy - by * cx;
   const std::int64_t sign = turn < 0 ? -1 : 1, area = sign * turn;
+  if (area == 1) return {};  // no other sample lies in it
   const std::int64_t base = whole(a.z), rise_b = sign * (whole(b.z) - base),
                      rise_c = sign * (whole(c.z) - base);
   // Over cell (x, y), counted from a: area * (interpolated - z) = area * (base - z) + x * slope_x + y *
   // slope_y.
   const std::int64_t slope_x = rise_b * cy - rise_c * by, slope_y = rise_c * bx - rise_b * cx;
-  const exact::Int128 exact_limit = floor_product(tolerance, shift_, area);
-  const std::int64_t limit = exact_limit > INT64_MAX ? INT64_MAX : static_cast<std::int64_t>(exact_limit);
-  std::int64_t worst = 0;
-  SampleIndex at = 0;
-  visit_spans(cell_of(a), cell_of(b), cell_of(c),
-              [&](std::int32_t row, std::int32_t first, std::int32_t last) {
-                const SampleIndex start = index(first, row);
-                const std::int32_t* const z = heights_.data() + start;
-                std::int64_t plane = area * base + (first - a.column) * slope_x + (row - a.row) * slope_y;
-                const std::int32_t count = last - first + 1;
-                for (std::int32_t i = 0; i < count; ++i, plane += slope_x) {
-                  const std::int64_t difference = plane - area * z[i];
-                  const std::int64_t distance = difference < 0 ? -difference : difference;
-                  if (distance <= worst || z[i] == kVoid) continue;
-                  worst = distance;
-                  at = start + static_cast<SampleIndex>(i);
-                }
-                return !(depth == Depth::kFirstOver && worst > limit) && !cancelled();
-              });
-  return {static_cast<double>(worst) / (static_cast<double>(area) * scale_), at, worst > limit};
+  const double limit = tolerance * scale_ * static_cast<double>(area), surely_over = limit * (1 + 0x1p-40) + 1;
+  const bool to_end = depth == Depth::kWorst || surely_over >= 0x1p+62;
+  const WholePlane plane{cell_of(a), cell_of(b), cell_of(c), area, area * base, slope_x, slope_y};
+  const std::int64_t stop = to_end ? INT64_MAX : static_cast<std::int64_t>(surely_over);
+  const WholeHeights heights{heights_.data(), grid().width};
+  const WorstCell worst =
+      doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);
+  const auto distance = static_cast<double>(worst.distance);
+  // Rounding is far from the limit for nearly all; else the whole numbers decide.
+  const bool doubtful = std::abs(distance - limit) <= 0x1p-48 * limit;
+  const bool over = doubtful ? worst.distance > floor_product(tolerance, shift_, area) : distance > limit;
+  return {distance / (static_cast<double>(area) * scale_), worst.at, over};
 }
 
-std::optional<double> WholeGridSamples::height(SampleIndex cell) const {
-  if (heights_[cell] == kVoid) return std::nullopt;
+double WholeGridSamples::height_or_nan(SampleIndex cell) const {
+  if (heights_[cell] == WholeHeights::kVoid) return std::numeric_limits<double>::quiet_NaN();
   return heights_[cell] / scale_;
 }
 
@@ -183,7 +244,7 @@ Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, do
                   worst = distance;
                   at = start + static_cast<SampleIndex>(i);
                 }
-                return !(depth == Depth::kFirstOver && worst - limit > slack) && !cancelled();
+                return !(depth == Depth::kFirstOver && worst - limit > slack) && !cancelled(row);
               });
   if (worst - limit > slack) return {worst / area, at, true};
   if (worst - limit > -slack) return judge_all(a, b, c, tolerance);
@@ -203,13 +264,12 @@ Scan RealGridSamples::judge_all(const Site& a, const Site& b, const Site& c, dou
                   const auto verdict = facet.judge(*weights, z, tolerance);
                   keep_worse(found, {verdict.error, index(column, row), !verdict.within});
                 }
-                return !cancelled();
+                return !cancelled(row);
               });
   return found;
 }
 
-std::optional<double> RealGridSamples::height(SampleIndex cell) const {
-  if (std::isnan(heights_[cell])) return std::nullopt;
+double RealGridSamples::height_or_nan(SampleIndex cell) const {
   return heights_[cell];
 }
 

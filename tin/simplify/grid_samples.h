@@ -23,7 +23,16 @@ class GridSamples : public Samples {
  public:
   Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
   Site site(SampleIndex sample) const override;
-  SampleIndex find(exact::Point p) const override;
+  void sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const override;
+  exact::Point position(SampleIndex sample) const override;
+  std::optional<SampleIndex> find(exact::Point p) const override;
+  SampleIndex end() const override { return others_.end(); }
+  bool exists(SampleIndex sample) const override {
+    return sample < cell_count() ? height(sample).has_value() : others_.exists(sample);
+  }
+  std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const override;
+  Extent extent() const override;
+  void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 
  protected:
   GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
@@ -32,8 +41,12 @@ class GridSamples : public Samples {
   /// Scans the cells of a triangle whose corners are cell centres.
   virtual Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                           Depth depth) const = 0;
-  /// The height of a cell's sample; nothing where there is none.
-  virtual std::optional<double> height(SampleIndex cell) const = 0;
+  /// The height of a cell's sample; NaN where there is none.
+  virtual double height_or_nan(SampleIndex cell) const = 0;
+  std::optional<double> height(SampleIndex cell) const {
+    const double z = height_or_nan(cell);
+    return z == z ? std::optional(z) : std::nullopt;
+  }
 
   std::size_t cell_count() const {
     return static_cast<std::size_t>(grid_.width) * static_cast<std::size_t>(grid_.height);
@@ -42,6 +55,8 @@ class GridSamples : public Samples {
     return static_cast<SampleIndex>(row) * static_cast<SampleIndex>(grid_.width) +
            static_cast<SampleIndex>(column);
   }
+  /// Asked once in many rows.
+  bool cancelled(std::int32_t row) const { return row % 64 == 0 && cancelled(); }
   bool cancelled() const { return progress_ != nullptr && progress_->cancelled(); }
   const terrain::SourceGrid& grid() const { return grid_; }
 
@@ -60,23 +75,22 @@ class WholeGridSamples final : public GridSamples {
   static bool can_hold(const terrain::SourceGrid& grid, int shift, double largest);
 
   /// Requires: can_hold().
-  WholeGridSamples(const terrain::SourceGrid& grid, int shift, std::vector<Facet::Corner> others,
+  WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, std::vector<Facet::Corner> others,
                    const base::Progress* progress);
   void put(const CellSample& sample) {
     heights_[index(sample.column, sample.row)] = static_cast<std::int32_t>(whole(sample.z));
   }
 
  private:
-  static constexpr std::int32_t kVoid = INT32_MIN;
   static constexpr int kMostShift = 16;
   static constexpr double kMostHeight = 0x1p+30;
 
   std::int64_t whole(double z) const { return static_cast<std::int64_t>(z * scale_); }
   Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
-  std::optional<double> height(SampleIndex cell) const override;
+  double height_or_nan(SampleIndex cell) const override;
 
   int shift_;
-  double scale_;
+  double scale_, largest_;  // 2^shift; the largest absolute height, times that
   std::vector<std::int32_t> heights_;
 };
 
@@ -96,7 +110,7 @@ class RealGridSamples final : public GridSamples {
 
   Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
   Scan judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const;
-  std::optional<double> height(SampleIndex cell) const override;
+  double height_or_nan(SampleIndex cell) const override;
 
   std::vector<double> heights_;  // NaN: no sample
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "tin/base/check.h"
 #include "tin/simplify/ranking.h"
 
 namespace tin::simplify {
@@ -98,25 +97,47 @@ Site PointSamples::site(SampleIndex sample) const {
   return {own.at, -1, -1, own.z, sample};
 }
 
-SampleIndex PointSamples::find(Point p) const {
-  std::size_t node = 0, begin = 0, end = samples_.size();
-  std::vector<std::array<std::size_t, 3>> left;
-  for (;;) {
+Extent PointSamples::extent() const {
+  Extent out;
+  out.samples = samples_.size();
+  if (!empty()) out.box = {boxes_[0].low, boxes_[0].high};
+  return out;
+}
+
+std::optional<SampleIndex> PointSamples::find(Point p) const {
+  std::optional<SampleIndex> found;
+  visit_box({p, p}, [&](std::size_t i) { found = first_ + static_cast<SampleIndex>(i); });
+  return found;
+}
+
+/// All of them: the hull is found quickly enough among a box's samples.
+void PointSamples::outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const {
+  visit_box({box.min, box.max}, [&](std::size_t i) { out.push_back(first_ + static_cast<SampleIndex>(i)); });
+}
+
+/// Calls visit(i) for each sample in the closed box.
+template <class Visit>
+void PointSamples::visit_box(const Box& wanted, const Visit& visit) const {
+  struct Part {
+    std::size_t node, begin, end;
+  };
+  std::array<Part, 2 * 64> left;
+  std::size_t count = 0;
+  if (!empty()) left[count++] = {0, 0, samples_.size()};
+  while (count > 0) {
+    const auto [node, begin, end] = left[--count];
     const Box& box = boxes_[node];
-    const bool inside = box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
-    if (inside && end - begin > kLeaf) {
+    if (box.low.x > wanted.high.x || box.low.y > wanted.high.y || box.high.x < wanted.low.x || box.high.y < wanted.low.y) continue;
+    if (end - begin > kLeaf) {
       const std::size_t middle = begin + (end - begin) / 2;
-      left.push_back({2 * node + 2, middle, end});
-      node = 2 * node + 1;
-      end = middle;
+      left[count++] = {2 * node + 2, middle, end};
+      left[count++] = {2 * node + 1, begin, middle};
       continue;
     }
-    for (std::size_t i = begin; inside && i < end; ++i) {
-      if (samples_[i].at == p) return first_ + static_cast<SampleIndex>(i);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point p = samples_[i].at;
+      if (p.x >= wanted.low.x && p.x <= wanted.high.x && p.y >= wanted.low.y && p.y <= wanted.high.y) visit(i);
     }
-    TIN_CHECK(!left.empty());
-    node = left.back()[0], begin = left.back()[1], end = left.back()[2];
-    left.pop_back();
   }
 }
 

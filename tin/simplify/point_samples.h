@@ -18,7 +18,13 @@ class PointSamples final : public Samples {
 
   Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
   Site site(SampleIndex sample) const override;
-  SampleIndex find(exact::Point p) const override;
+  exact::Point position(SampleIndex sample) const override { return samples_[sample - first_].at; }
+  std::optional<SampleIndex> find(exact::Point p) const override;
+  SampleIndex end() const override { return first_ + static_cast<SampleIndex>(samples_.size()); }
+  bool exists(SampleIndex sample) const override { return sample >= first_ && sample < end(); }
+  std::optional<SampleIndex> neighbour(SampleIndex, std::int32_t, std::int32_t) const override { return std::nullopt; }
+  Extent extent() const override;
+  void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 
   bool empty() const { return samples_.empty(); }
 
@@ -29,6 +35,8 @@ class PointSamples final : public Samples {
   struct Query;
   void build(std::size_t node, std::size_t begin, std::size_t end);
   bool visit(Query& query, std::size_t node, std::size_t begin, std::size_t end) const;
+  template <class Visit>
+  void visit_box(const Box& wanted, const Visit& visit) const;
   bool visit_leaf(Query& query, std::size_t begin, std::size_t end) const;
 
   static constexpr std::size_t kLeaf = 8;

@@ -6,13 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "tin/exact/predicates.h"
 #include "tin/simplify/grid_samples.h"
 #include "tin/simplify/point_samples.h"
+#include "tin/simplify/spans.h"
 
 namespace tin::simplify {
 
 using mesh::VertexSlot;
+using exact::Point;
+using terrain::Placement;
 using terrain::SourceGrid;
+using terrain::SourceSamples;
 using terrain::Terrain;
 
 namespace {
@@ -32,21 +37,64 @@ int fraction_bits(double z) {
   return std::max(0, 53 - exponent - std::countr_zero(static_cast<std::uint64_t>(mantissa)));
 }
 
-/// Calls visit(position, height) for each vertex; false when cancelled.
-template <class Visit>
-bool visit_vertices(const Terrain& source, const base::Progress* progress, const Visit& visit) {
-  for (std::uint32_t i = 1; i < source.mesh().vertex_slots(); ++i) {
-    if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
-    if (source.mesh().is_alive(VertexSlot(i)))
-      visit(source.mesh().point(VertexSlot(i)), source.z(VertexSlot(i)));
+/// What samples are made of: all of a source, people's own, then the vertices where neither has one.
+class Input {
+ public:
+  Input(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own)
+      : terrain_(terrain), source_(source), others_(own.begin(), own.end()) {
+    const auto is_own = [own](Point p) {
+      const auto at = std::lower_bound(own.begin(), own.end(), p, [](const Placement& a, Point b) { return a.at < b; });
+      return at != own.end() && at->at == p;
+    };
+    if (terrain_ == nullptr || are_vertices()) return;
+    visit_vertices(nullptr, [&](Point p, double z) {
+      if (!(source_ != nullptr && source_->find(p)) && !is_own(p)) others_.push_back({p, z});
+    });
   }
-  return progress == nullptr || !progress->cancelled();
-}
 
-std::optional<Survey> survey(const Terrain& source, const base::Progress* progress) {
+  const SourceGrid* grid() const {
+    if (source_ != nullptr) return source_->grid().get();
+    return terrain_->source_grid();
+  }
+
+  /// Calls visit(position, height) for each sample; false when cancelled.
+  template <class Visit>
+  bool visit(const base::Progress* progress, const Visit& visit) const {
+    if (are_vertices()) return visit_vertices(progress, visit);
+    for (std::size_t i = 0; source_ != nullptr && i < source_->size(); ++i) {
+      if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
+      if (source_->is_sample(i)) visit(source_->at(i), source_->z(i));
+    }
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+      if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
+      visit(others_[i].at, others_[i].z);
+    }
+    return progress == nullptr || !progress->cancelled();
+  }
+
+ private:
+  /// Nothing but the vertices: they need not be copied.
+  bool are_vertices() const { return source_ == nullptr && others_.empty(); }
+
+  template <class Visit>
+  bool visit_vertices(const base::Progress* progress, const Visit& visit) const {
+    const mesh::Mesh& mesh = terrain_->mesh();
+    for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
+      if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
+      if (mesh.is_alive(VertexSlot(i))) visit(mesh.point(VertexSlot(i)), terrain_->z(VertexSlot(i)));
+    }
+    return progress == nullptr || !progress->cancelled();
+  }
+
+  const Terrain* terrain_;
+  const SourceSamples* source_;
+  std::vector<Placement> others_;
+};
+
+std::optional<Survey> survey(const Input& input, const base::Progress* progress) {
   Survey out;
-  const SourceGrid* const grid = source.source_grid();
-  const bool finished = visit_vertices(source, progress, [&](exact::Point p, double z) {
+  const SourceGrid* const grid = input.grid();
+  const bool finished = input.visit(progress, [&](Point p, double z) {
     ++(grid != nullptr && grid->cell_centred_at(p) ? out.on_cells : out.others);
     out.largest = std::max(out.largest, std::abs(z));
     out.shift = std::max(out.shift, fraction_bits(z));
@@ -59,45 +107,77 @@ std::optional<Survey> survey(const Terrain& source, const base::Progress* progre
 bool is_worth_scanning(const SourceGrid& grid, const Survey& found) {
   const double cells = static_cast<double>(grid.width) * grid.height;
   return found.on_cells > found.others && cells <= 16.0 * static_cast<double>(found.on_cells) &&
-         cells + static_cast<double>(found.others) < 0x1p+32;
+         cells + static_cast<double>(found.others) < 0x1p+32 && std::max(grid.width, grid.height) < kMostCells;
 }
 
-std::vector<Facet::Corner> all_points(const Terrain& source, const SourceGrid* except_on, std::size_t count) {
+std::vector<Facet::Corner> all_points(const Input& input, const SourceGrid* except_on, std::size_t count) {
   std::vector<Facet::Corner> out;
   out.reserve(count);
-  visit_vertices(source, nullptr, [&](exact::Point p, double z) {
+  input.visit(nullptr, [&](Point p, double z) {
     if (except_on == nullptr || !except_on->cell_centred_at(p)) out.push_back({p, z});
   });
   return out;
 }
 
 template <class Grid>
-std::unique_ptr<Samples> filled(std::unique_ptr<Grid> grid, const Terrain& source,
-                                const base::Progress* progress) {
-  const bool finished = visit_vertices(source, progress, [&](exact::Point p, double z) {
-    if (const auto cell = source.source_grid()->cell_centred_at(p)) grid->put({cell->column, cell->row, z});
+std::unique_ptr<Samples> filled(std::unique_ptr<Grid> grid, const Input& input, const base::Progress* progress) {
+  const bool finished = input.visit(progress, [&](Point p, double z) {
+    if (const auto cell = input.grid()->cell_centred_at(p)) grid->put({cell->column, cell->row, z});
   });
   return finished ? std::move(grid) : nullptr;
 }
 
 }  // namespace
 
-std::unique_ptr<Samples> make_samples(const Terrain& source, base::Progress* progress) {
-  const auto found = survey(source, progress);
+void Samples::sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const {
+  for (SampleIndex sample = begin; sample < end; ++sample) {
+    if (exists(sample)) out.push_back(site(sample));
+  }
+}
+
+std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box& box) {
+  std::vector<SampleIndex> found;
+  samples.outermost(box, found);
+  std::vector<std::pair<Point, SampleIndex>> points;
+  for (const SampleIndex sample : found) points.emplace_back(samples.position(sample), sample);
+  std::sort(points.begin(), points.end());
+  // Andrew's monotone chain: below from left to right, then above from right to left.
+  std::vector<std::pair<Point, SampleIndex>> chain;
+  std::size_t kept = 0;  // that the present half may not take back
+  const auto add = [&](const std::pair<Point, SampleIndex>& next) {
+    while (chain.size() >= kept + 2 &&
+           exact::orientation(chain[chain.size() - 2].first, chain.back().first, next.first) <= 0) {
+      chain.pop_back();
+    }
+    chain.push_back(next);
+  };
+  for (const auto& point : points) add(point);
+  kept = chain.empty() ? 0 : chain.size() - 1;
+  for (auto point = points.rbegin(); point != points.rend(); ++point) {
+    if (point != points.rbegin()) add(*point);
+  }
+  if (chain.size() > 1) chain.pop_back();  // the first one again
+  std::vector<SampleIndex> out;
+  for (const auto& [at, sample] : chain) out.push_back(sample);
+  return out;
+}
+
+std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source,
+                                      std::span<const Placement> own, base::Progress* progress) {
+  const Input input(terrain, source, own);
+  const auto found = survey(input, progress);
   if (!found) return nullptr;
-  const SourceGrid* const grid = source.source_grid();
+  const SourceGrid* const grid = input.grid();
   if (grid != nullptr && is_worth_scanning(*grid, *found)) {
-    auto others = found->others == 0 ? std::vector<Facet::Corner>() : all_points(source, grid, found->others);
+    auto others = found->others == 0 ? std::vector<Facet::Corner>() : all_points(input, grid, found->others);
     if (WholeGridSamples::can_hold(*grid, found->shift, found->largest)) {
-      return filled(std::make_unique<WholeGridSamples>(*grid, found->shift, std::move(others), progress),
-                    source, progress);
+      return filled(std::make_unique<WholeGridSamples>(*grid, found->shift, found->largest, std::move(others), progress), input, progress);
     }
     if (RealGridSamples::can_hold(found->largest)) {
-      return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), progress), source, progress);
+      return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), progress), input, progress);
     }
   }
-  auto points =
-      std::make_unique<PointSamples>(all_points(source, nullptr, source.vertex_count()), 0, progress);
+  auto points = std::make_unique<PointSamples>(all_points(input, nullptr, found->on_cells + found->others), 0, progress);
   if (progress != nullptr && progress->cancelled()) return nullptr;
   return points;
 }

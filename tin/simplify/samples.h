@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "tin/base/progress.h"
 #include "tin/exact/point.h"
+#include "tin/terrain/source_samples.h"
 #include "tin/terrain/terrain.h"
 
 namespace tin::simplify {
@@ -37,6 +40,14 @@ enum class Depth {
   kFirstOver,  // may stop once a sample is over the tolerance: `error` and `sample` are then any such
 };
 
+/// Where the samples lie.
+struct Extent {
+  terrain::Box box;
+  std::int64_t step_x = 1, step_y = 1;  // lattice steps between neighbours in a raster; both 1 elsewhere
+  std::size_t samples = 0;              // in a raster: cells, voids among them
+};
+
+/// Safe to be asked by several threads at once.
 class Samples {
  public:
   virtual ~Samples() = default;
@@ -46,12 +57,31 @@ class Samples {
   virtual Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const = 0;
 
   virtual Site site(SampleIndex sample) const = 0;
-  /// The sample at `p`. Requires: there is one.
-  virtual SampleIndex find(exact::Point p) const = 0;
+  /// Appends the sites of the samples from `begin` to before `end`.
+  virtual void sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const;
+  virtual exact::Point position(SampleIndex sample) const = 0;
+  /// The sample at `p`, if there is one.
+  virtual std::optional<SampleIndex> find(exact::Point p) const = 0;
+  /// One past the largest index. Not every index below it is a sample; neighbours in this order are often neighbours on
+  /// the ground.
+  virtual SampleIndex end() const = 0;
+  virtual bool exists(SampleIndex sample) const = 0;
+
+  /// The sample so many columns and rows from one on a raster; nothing where there is none.
+  virtual std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const = 0;
+
+  virtual Extent extent() const = 0;
+  /// Appends samples of the closed box, among them all corners of their convex hull.
+  virtual void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const = 0;
 };
 
-/// The samples of a terrain: on its raster where most of its vertices are, else as scattered points. Nothing
-/// when cancelled. Borrows `source` and `progress`.
-std::unique_ptr<Samples> make_samples(const terrain::Terrain& source, base::Progress* progress);
+/// The corners of the convex hull of the samples in the closed box; fewer than three when they are all in a line.
+std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box& box);
+
+/// The samples of `source`, those that are people's `own`, and the vertices of `terrain` where neither has a sample. `terrain` or
+/// `source` may be null, not both. On the raster where most of them are, else as scattered points. Nothing when cancelled.
+/// Borrows all. Requires: as simplify().
+std::unique_ptr<Samples> make_samples(const terrain::Terrain* terrain, const terrain::SourceSamples* source,
+                                      std::span<const terrain::Placement> own, base::Progress* progress);
 
 }  // namespace tin::simplify

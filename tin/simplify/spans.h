@@ -10,63 +10,54 @@ struct GridPoint {
   std::int32_t x = 0, y = 0;
 };
 
-/// Walks down one side of a triangle, a row at a time, and knows where it is: floor and fraction. One
-/// division per side.
-class SideWalk {
+/// Coordinates of cells must be smaller than this in absolute value.
+inline constexpr std::int32_t kMostCells = std::int32_t{1} << 18;
+
+/// A side of a triangle: where it crosses a row, rounded to whole cells without a division, and right all the same. A crossing is a
+/// multiple of one over the number of rows, so it is whole or more than 2^-19 away from what is whole; the rounding errors stay
+/// below 2^-29, and kEpsilon lies between.
+class Side {
  public:
   /// From `top` to `bottom`; a level side stays at `top`.
-  SideWalk(GridPoint top, GridPoint bottom) : x_(top.x), rows_(bottom.y - top.y) {
-    if (rows_ == 0) return;
-    const std::int64_t across = std::int64_t{bottom.x} - top.x;
-    whole_ = across / rows_;
-    part_ = across % rows_;
-    if (part_ < 0) {
-      --whole_;
-      part_ += rows_;
-    }
-  }
-  std::int64_t floor() const { return x_; }
-  std::int64_t ceil() const { return x_ + (fraction_ > 0 ? 1 : 0); }
-  void step() {
-    x_ += whole_;
-    fraction_ += part_;
-    if (fraction_ >= rows_) {
-      fraction_ -= rows_;
-      ++x_;
-    }
-  }
+  Side(GridPoint top, GridPoint bottom)
+      : x_(top.x), slope_(top.y == bottom.y ? 0 : static_cast<double>(bottom.x - top.x) / (bottom.y - top.y)), y_(top.y) {}
+  std::int32_t floor(std::int32_t row) const { return static_cast<std::int32_t>(at(row) + (kBias + kEpsilon)) - kBias; }
+  std::int32_t ceil(std::int32_t row) const { return static_cast<std::int32_t>(at(row) + (kBias + 1 - kEpsilon)) - kBias; }
 
  private:
-  std::int64_t x_, rows_;
-  std::int64_t whole_ = 0, part_ = 0;
-  std::int64_t fraction_ = 0;  // of rows_
+  static constexpr std::int32_t kBias = 2 * kMostCells;  // conversion rounds towards zero: so towards the left
+  static constexpr double kEpsilon = 0x1p-21;
+  double at(std::int32_t row) const { return x_ + (row - y_) * slope_; }
+
+  double x_, slope_;
+  std::int32_t y_;
 };
 
-/// Calls visit(row, first, last) for each row of cells in the closed triangle, from the least row on, columns
-/// first..last (not empty); stops when it returns false. Requires: not collinear.
-template <class Visit>
-void visit_spans(GridPoint a, GridPoint b, GridPoint c, const Visit& visit) {
+/// Sorts the corners of a triangle by row; whether the one in the middle lies on the side of greater x.
+inline bool sort_by_row(GridPoint& a, GridPoint& b, GridPoint& c) {
   if (b.y < a.y) std::swap(a, b);
   if (c.y < b.y) std::swap(b, c);
   if (b.y < a.y) std::swap(a, b);
-  const std::int64_t turn = (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
-                            (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
-  const bool bend_is_right = turn > 0;  // b lies on the side of greater x
-  SideWalk through(a, c);
-  const auto rows = [&](SideWalk side, std::int32_t from, std::int32_t to) {
+  return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) > (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
+}
+
+/// Calls visit(row, first, last) for each row of cells in the closed triangle, from the least row on, columns
+/// first..last (not empty); stops when it returns false. Requires: not collinear; coordinates below kMostCells.
+template <class Visit>
+void visit_spans(GridPoint a, GridPoint b, GridPoint c, const Visit& visit) {
+  const bool bend_is_right = sort_by_row(a, b, c);
+  const Side through(a, c);
+  const auto rows = [&](const Side& side, std::int32_t from, std::int32_t to) {
+    const Side& left = bend_is_right ? through : side;
+    const Side& right = bend_is_right ? side : through;
     for (std::int32_t row = from; row < to; ++row) {
-      const SideWalk& left = bend_is_right ? through : side;
-      const SideWalk& right = bend_is_right ? side : through;
-      const auto first = static_cast<std::int32_t>(left.ceil()),
-                 last = static_cast<std::int32_t>(right.floor());
+      const std::int32_t first = left.ceil(row), last = right.floor(row);
       if (first <= last && !visit(row, first, last)) return false;
-      through.step();
-      side.step();
     }
     return true;
   };
-  if (!rows(SideWalk(a, b), a.y, b.y)) return;
-  rows(SideWalk(b, c), b.y, c.y + 1);
+  if (a.y < b.y && !rows(Side(a, b), a.y, b.y)) return;
+  rows(Side(b, c), b.y, c.y + 1);
 }
 
 }  // namespace tin::simplify

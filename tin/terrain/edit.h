@@ -54,12 +54,20 @@ struct Step {
   friend bool operator==(const Step&, const Step&) = default;
 };
 
+/// Who made a change: it decides what the change does to the terrain's samples (amendments.h).
+enum class Cause : std::uint8_t {
+  kEdit,            // people: what they leave is the truth
+  kRevert,          // an earlier state comes back
+  kSimplification,  // vertices go or come as samples allow
+};
+
 /// What an accepted edit really did, in order: the journal's record and the source of undo.
 struct Change {
   std::vector<Step> steps;
+  Cause cause = Cause::kEdit;
   friend bool operator==(const Change&, const Change&) = default;
 
-  /// The change that undoes this one: steps reversed, before and after exchanged.
+  /// The change that undoes this one: steps reversed, before and after exchanged. Its cause is kRevert.
   Change inverse() const;
 };
 

@@ -271,10 +271,14 @@ std::vector<Vertex> Terrain::vertices_by_id(std::span<const VertexId> without) c
   return vertices;
 }
 
-Terrain Terrain::without(std::span<const VertexId> ids, unsigned threads) const {
-  auto rest = restore(frame_, vertices_by_id(ids), next_id_, threads);
+Terrain Terrain::replaced(std::span<const VertexId> removed, std::span<const Vertex> added, unsigned threads) const {
+  auto vertices = vertices_by_id(removed);
+  vertices.insert(vertices.end(), added.begin(), added.end());
+  const VertexId next = added.empty() ? next_id_ : VertexId(added.back().id.value() + 1);
+  auto rest = restore(frame_, vertices, next, threads);
   TIN_CHECK(rest.ok());
   rest->set_source_grid(source_grid_);
+  rest->set_amendments(amendments_);
   return std::move(*rest);
 }
 

@@ -16,6 +16,7 @@
 #include "tin/base/result.h"
 #include "tin/delaunay/triangulation.h"
 #include "tin/frame/frame.h"
+#include "tin/terrain/amendments.h"
 #include "tin/terrain/digest.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/id_map.h"
@@ -93,7 +94,9 @@ class Terrain {
   std::vector<Vertex> vertices_by_id(std::span<const VertexId> without = {}) const;
   /// What is left when the vertices of these ids (ascending) are removed, built anew: the same terrain as by
   /// removing them one by one, sooner when they are many.
-  Terrain without(std::span<const VertexId> ids, unsigned threads = 1) const;
+  Terrain without(std::span<const VertexId> ids, unsigned threads = 1) const { return replaced(ids, {}, threads); }
+  /// The same with other vertices in their stead, whose ids, from next_id() on, ascend. Requires: no two at one position.
+  Terrain replaced(std::span<const VertexId> removed, std::span<const Vertex> added, unsigned threads = 1) const;
 
   std::string digest() const { return hash_.digest(frame_); }
   /// O(n) each; empty terrain: nothing.
@@ -103,6 +106,12 @@ class Terrain {
   void set_source_grid(std::shared_ptr<const SourceGrid> grid) { source_grid_ = std::move(grid); }
   const SourceGrid* source_grid() const { return source_grid_.get(); }
   std::shared_ptr<const SourceGrid> shared_source_grid() const { return source_grid_; }
+
+  /// What became of the samples that the terrain was made of.
+  const Amendments& amendments() const { return amendments_; }
+  void set_amendments(Amendments amendments) { amendments_ = std::move(amendments); }
+  /// Has the samples follow a change that was applied or replayed, once it is certain to stay. Requires: it was the last.
+  void amend(const Change& change) { amendments_.take(*this, change); }
 
  private:
   base::Result<VertexId> apply_one(const Insert& edit, Duplicates duplicates, Change& change);
@@ -121,6 +130,7 @@ class Terrain {
   VertexId next_id_{1};
   VertexSetHash hash_;
   std::shared_ptr<const SourceGrid> source_grid_;
+  Amendments amendments_;
 };
 
 }  // namespace tin::terrain

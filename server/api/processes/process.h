@@ -44,5 +44,11 @@ tin::base::Result<void> check_new_tin(const Context& context, const std::optiona
 
 // One function per file of this folder.
 Process simplify();
+Process contours();
+Process volume();
+Process cut_fill();
+Process surface_area();
+Process profile();
+Process line_of_sight();
 
 }  // namespace server::api::processes

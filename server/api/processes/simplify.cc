@@ -1,6 +1,8 @@
 #include "server/app/simplify.h"
 
-#include "proto/processes/simplify.h"
+#include <algorithm>
+
+#include "server/api/processes/simplify.h"
 #include "server/api/processes/process.h"
 
 namespace server::api::processes {
@@ -9,25 +11,57 @@ using tin::base::Result;
 
 namespace {
 
-std::string results_json(const app::Simplified& done) {
-  const auto& report = done.report;
-  proto::SimplifyResults results;
-  results.vertices_before = report.vertices_before;
-  results.vertices_after = report.vertices_after;
-  results.max_error = report.max_error;
-  results.tolerance_met = report.tolerance_met;
-  results.edited_meanwhile = done.edited_meanwhile;
-  if (report.worst) {
-    results.max_error_at = done.tin->read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
-      return proto::Position2{terrain.frame().x.world(report.worst->at.x),
-                              terrain.frame().y.world(report.worst->at.y)};
-    });
+proto::SimplifyWorst worst_sample(const tin::simplify::Worst& worst, const tin::terrain::Terrain& terrain) {
+  proto::SimplifyWorst out;
+  out.x = terrain.frame().x.world(worst.at.x);
+  out.y = terrain.frame().y.world(worst.at.y);
+  out.z = worst.z;
+  out.error = worst.error;
+  if (!worst.source_index) return out;
+  if (const auto* grid = terrain.source_grid()) {
+    const auto width = static_cast<std::uint64_t>(grid->width);
+    out.column = *worst.source_index % width;
+    out.row = *worst.source_index / width;
+  } else {
+    out.index = *worst.source_index;
   }
-  results.rmse = report.rmse;
+  return out;
+}
+
+std::string results_json(const app::Simplified& done) {
+  proto::SimplifyResults results = done.tin->read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
+    return results_of(done.report, terrain);
+  });
+  results.edited_meanwhile = done.edited_meanwhile;
+  results.against_source = done.against_source;
+  results.out_of_force = done.out_of_force;
   results.seconds = done.seconds;
   results.tin = done.tin->id();
   results.revision = done.revision;
   return proto::simplify_results_json(results);
+}
+
+/// Errors: kUnknownVertex, where the id stands.
+Result<app::Protection> protection_of(const app::Tin& tin, const proto::SimplifyProtect& asked) {
+  app::Protection protect;
+  protect.border = asked.border;
+  const auto unknown = tin.read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
+    return std::find_if(asked.ids.begin(), asked.ids.end(),
+                        [&](const auto& one) { return !terrain.vertex(one.id); });
+  });
+  if (unknown != asked.ids.end()) {
+    return tin::base::error(tin::base::Code::kUnknownVertex,
+                            "There is no vertex " + std::to_string(unknown->id.value()) + ".", unknown->where);
+  }
+  for (const auto& one : asked.ids) protect.ids.push_back(one.id);
+  for (const auto& polygon : asked.polygons) {
+    auto& rings = protect.polygons.emplace_back();
+    for (const auto& ring : polygon) {
+      auto& corners = rings.emplace_back();
+      for (const proto::Position2& at : ring) corners.push_back({at.x, at.y});
+    }
+  }
+  return protect;
 }
 
 Result<Execution> prepare(Context& context, const proto::Value& value) {
@@ -38,7 +72,12 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
   if (inputs->as) {
     if (auto room = check_new_tin(context, inputs->as); !room) return room.error();
   }
-  app::SimplifyRequest wanted{*tin, {}, inputs->as};
+  auto protect = protection_of(**tin, inputs->protect);
+  if (!protect) return protect.error();
+  app::SimplifyRequest wanted{*tin, {}, inputs->max_seconds, *std::move(protect), inputs->as};
+  wanted.options.effort = effort_of(inputs->effort);
+  wanted.options.seed = inputs->seed;
+  wanted.options.threads = app::simplify_threads();
   wanted.options.tolerance = inputs->tolerance;
   if (inputs->max_vertices) wanted.options.max_vertices = static_cast<std::size_t>(*inputs->max_vertices);
   return Execution{
@@ -51,6 +90,34 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
 }
 
 }  // namespace
+
+tin::simplify::Effort effort_of(proto::SimplifyEffort effort) {
+  switch (effort) {
+    case proto::SimplifyEffort::kFast:
+      return tin::simplify::Effort::kFast;
+    case proto::SimplifyEffort::kBalanced:
+      return tin::simplify::Effort::kBalanced;
+    case proto::SimplifyEffort::kThorough:
+      return tin::simplify::Effort::kThorough;
+    case proto::SimplifyEffort::kBest:
+      break;
+  }
+  return tin::simplify::Effort::kBest;
+}
+
+proto::SimplifyResults results_of(const tin::simplify::Report& report, const tin::terrain::Terrain& terrain) {
+  proto::SimplifyResults results;
+  results.vertices_before = report.vertices_before;
+  results.vertices_after = report.vertices_after;
+  results.max_error = report.max_error;
+  if (report.worst) results.worst = worst_sample(*report.worst, terrain);
+  results.tolerance_met = report.tolerance_met;
+  results.rmse = report.rmse;
+  results.samples = report.samples;
+  results.histogram_bin = report.bin;
+  results.histogram.assign(report.histogram.begin(), report.histogram.end());
+  return results;
+}
 
 Process simplify() {
   return {&proto::simplify_description(), prepare};

@@ -9,7 +9,8 @@ using tin::base::error;
 using tin::base::Result;
 
 std::span<const Process> processes() {
-  static const std::vector<Process> table{simplify()};
+  static const std::vector<Process> table{simplify(), contours(), volume(),       cut_fill(),
+                                          surface_area(), profile(), line_of_sight()};
   return table;
 }
 

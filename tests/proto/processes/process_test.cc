@@ -76,14 +76,35 @@ Result<proto::SimplifyInputs> read_simplify(const char* body) {
 TEST(SimplifyInputsTest, ReadsEveryInput) {
   const auto inputs =
       read_simplify(
-          R"({"inputs":{"tin":"a","tolerance":0,"maxVertices":3,"as":"b","effort":"fast"}})")
+          R"({"inputs":{"tin":"a","tolerance":0,"maxVertices":3,"as":"b","effort":"best","maxSeconds":2.5,"seed":7}})")
           .value();
   EXPECT_EQ(inputs.tin, "a");
   EXPECT_EQ(inputs.tolerance, 0);
   EXPECT_EQ(inputs.max_vertices, 3U);
   EXPECT_EQ(inputs.as, "b");
+  EXPECT_EQ(inputs.effort, proto::SimplifyEffort::kBest);
+  EXPECT_EQ(inputs.max_seconds, 2.5);
+  EXPECT_EQ(inputs.seed, 7U);
   const auto small = read_simplify(R"({"inputs":{"tin":"a","maxVertices":1000}})").value();
-  EXPECT_FALSE(small.tolerance || small.as);
+  EXPECT_FALSE(small.tolerance || small.as || small.max_seconds);
+  EXPECT_EQ(small.effort, proto::SimplifyEffort::kBalanced);
+}
+
+TEST(SimplifyInputsTest, ReadsWhatStays) {
+  const auto one = read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"protect":"border"}})").value();
+  EXPECT_TRUE(one.protect.border);
+  const auto many =
+      read_simplify(
+          R"({"inputs":{"tin":"a","tolerance":1,"protect":[7,{"type":"Polygon","coordinates":[[[0,0],[4,0],[0,4,1]],)"
+          R"([[1,1],[2,1],[1,2]]]},{"type":"MultiPolygon","coordinates":[[[[9,9],[10,9],[9,10]]]]},8]}})")
+          .value();
+  EXPECT_FALSE(many.protect.border);
+  ASSERT_EQ(many.protect.ids.size(), 2U);
+  EXPECT_EQ(many.protect.ids[1].id.value(), 8U);
+  EXPECT_EQ(many.protect.ids[1].where, "/inputs/protect/3");
+  ASSERT_EQ(many.protect.polygons.size(), 2U);
+  EXPECT_EQ(many.protect.polygons[0].size(), 2U);
+  EXPECT_EQ(many.protect.polygons[0][0][2], (proto::Position2{0, 4}));
 }
 
 TEST(SimplifyInputsTest, ErrorsSayWhere) {
@@ -98,12 +119,24 @@ TEST(SimplifyInputsTest, ErrorsSayWhere) {
           {R"({"inputs":{"tin":"a","tolerance":"1"}})", Code::kMalformed, "/inputs/tolerance"},
           {R"({"inputs":{"tin":"a","maxVertices":2}})", Code::kInvalidValue, "/inputs/maxVertices"},
           {R"({"inputs":{"tin":"a","maxVertices":10.5}})", Code::kMalformed, "/inputs/maxVertices"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"effort":"best"}})", Code::kInvalidValue, "/inputs/effort"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"effort":"most"}})", Code::kInvalidValue, "/inputs/effort"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":0}})", Code::kInvalidValue, "/inputs/maxSeconds"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":86401}})", Code::kInvalidValue, "/inputs/maxSeconds"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":"all"}})", Code::kInvalidValue, "/inputs/protect"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":[1,0]}})", Code::kInvalidValue, "/inputs/protect/1"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Point","coordinates":[1,2]}}})",
+           Code::kInvalidValue, "/inputs/protect/type"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Polygon","coordinates":[[[1,2],[3]]]}}})",
+           Code::kInvalidValue, "/inputs/protect/coordinates/0"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Polygon","coordinates":[[[1,2],[3],[4,5]]]}}})",
+           Code::kMalformed, "/inputs/protect/coordinates/0/1"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"seed":-1}})", Code::kInvalidValue, "/inputs/seed"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"seed":1.5}})", Code::kMalformed, "/inputs/seed"},
           {R"({"inputs":{"tin":"a","tolerance":1,"as":""}})", Code::kInvalidValue, "/inputs/as"},
           {R"({"inputs":{"tin":"a","tolerance":1,"speed":9}})", Code::kMalformed, "/inputs/speed"},
       },
       read_simplify);
-  EXPECT_NE(read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"effort":"best"}})")
+  EXPECT_NE(read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"effort":"most"}})")
                 .error()
                 .message.find("fast"),
             std::string::npos);
@@ -118,12 +151,31 @@ TEST(ProcessDescriptionTest, KeepsTheContract) {
 }
 
 TEST(SimplifyResultsTest, KeepTheContract) {
-  proto::SimplifyResults results{1442401, 17250,  9.99, proto::Position2{-71.5, 44.25}, true, false,
-                                 3.5,     11.25, "hill", 5};
+  proto::SimplifyResults results;
+  results.vertices_before = 1442401;
+  results.vertices_after = 17250;
+  results.max_error = 9.99;
+  results.worst = proto::SimplifyWorst{-71.5, 44.25, 1203, 9.99, 600, 900, std::nullopt};
+  results.rmse = 3.5;
+  results.against_source = true;
+  results.samples = 1442401;
+  results.out_of_force = 2;
+  results.histogram_bin = 5;
+  results.histogram = {1000000, 442401};
+  results.seconds = 11.25;
+  results.tin = "hill";
+  results.revision = 5;
   EXPECT_EQ(proto::simplify_results_json(results),
             R"({"verticesBefore":1442401,"verticesAfter":17250,"maxError":9.99,"maxErrorAt":[-71.5,44.25],)"
-            R"("toleranceMet":true,"editedMeanwhile":false,"rmse":3.5,"seconds":11.25,"tin":"hill","revision":5})");
-  results.max_error_at.reset();
+            R"("maxErrorSample":{"z":1203,"column":600,"row":900},"toleranceMet":true,)"
+            R"("rmse":3.5,"certifiedAgainst":"original samples","samples":1442401,"samplesOutOfForce":2,)"
+            R"("histogram":{"bin":5,"counts":[1000000,442401]},"seconds":11.25,"editedMeanwhile":false,"tin":"hill","revision":5})");
+  results.worst->column = results.worst->row = std::nullopt;
+  results.worst->index = 17;
+  const std::string of_points = proto::simplify_results_json(results);
+  expect_clean(violations("GET", "/jobs/{job}/results", 200, of_points), of_points);
+  results.worst.reset();
+  results.against_source = false;
   const std::string json = proto::simplify_results_json(results);
   expect_clean(violations("GET", "/jobs/{job}/results", 200, json), json);
   const std::string document = proto::result_document(json);

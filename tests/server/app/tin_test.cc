@@ -216,7 +216,7 @@ TEST(LargeUndoTest, IsBuiltAsideAndJustAsExact) {
   const std::string before = digest();
   std::vector<VertexId> many;
   for (std::uint64_t id = 100; id < 35'000; ++id) many.emplace_back(id);
-  ASSERT_TRUE(tin.remove_vertices(tin.version(), many, {}).ok());
+  ASSERT_TRUE(tin.land(tin.version(), {many, {}, {}}, {}).ok());
   const std::string removed = digest();
   ASSERT_TRUE(tin.edit(std::vector<WorldEdit>{SetZ{VertexId(3), 8}}, {}).ok());
   ASSERT_TRUE(tin.revert(3, {}).ok());
@@ -272,7 +272,7 @@ TEST_F(TinTest, RemovalsOfAJobLeaveWhatWasEditedMeanwhile) {
       tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(22), 99}, Remove{VertexId(23)}}, {{}, info_}).ok());
   std::vector<VertexId> ids;
   for (std::uint64_t id = 22; id < 340; ++id) ids.emplace_back(id);
-  const auto landed = tin_.remove_vertices(seen, ids, info_);
+  const auto landed = tin_.land(seen, {ids, {}, {}}, info_);
   ASSERT_TRUE(landed.ok());
   EXPECT_TRUE(landed->edited_meanwhile);
   EXPECT_EQ(landed->vertices_left, 400 - 1 - (ids.size() - 2));
@@ -289,10 +289,63 @@ TEST_F(TinTest, RemovalsBuiltAsideEqualRemovalsInPlace) {
     many.emplace_back(id);
     edits.push_back(Remove{VertexId(id)});
   }
-  ASSERT_TRUE(tin_.remove_vertices(tin_.version(), many, info_).ok());
+  ASSERT_TRUE(tin_.land(tin_.version(), {many, {}, {}}, info_).ok());
   ASSERT_TRUE(in_place.edit(edits, {{}, info_}).ok());
   EXPECT_EQ(digest(), in_place.read([](const Terrain& t, std::uint64_t) { return t.digest(); }));
   EXPECT_EQ(tin_.summary().triangle_count, in_place.summary().triangle_count);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, AThinningPutsSamplesBackAndGivesHeights) {
+  const Version seen = tin_.version();
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{InsertAt{0.5, 0.5, 9}, SetZ{VertexId(30), 5}}, {{}, info_}).ok());
+  server::app::Thinning thinning;
+  thinning.removed = {VertexId(22)};
+  thinning.inserted = {{{500, 500}, 1}, {{1500, 1500}, 7}};  // at the first an edit stands by now
+  thinning.reset = {{VertexId(30), seen.terrain->vertex(VertexId(30))->at, 2.5},
+                    {VertexId(31), seen.terrain->vertex(VertexId(31))->at, 3.5}};
+  const auto landed = tin_.land(seen, thinning, info_);
+  ASSERT_TRUE(landed.ok());
+  EXPECT_EQ(landed->vertices_left, 401U);
+  EXPECT_TRUE(landed->edited_meanwhile);
+  const Version now = tin_.version();
+  EXPECT_FALSE(now.terrain->vertex(VertexId(22)));
+  EXPECT_EQ(now.terrain->vertex(VertexId(401))->z, 9) << "edits stand";
+  EXPECT_EQ(now.terrain->vertex(VertexId(402))->z, 7);
+  EXPECT_EQ(now.terrain->vertex(VertexId(30))->z, 5) << "edits stand";
+  EXPECT_EQ(now.terrain->vertex(VertexId(31))->z, 3.5);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(TinTest, AThinningBuiltAsideEqualsOneInPlaceSamplesAndAll) {
+  constexpr int kSide = 160;  // more vertices go than are removed one by one
+  FailingStore other_store;
+  Tin large({{"u", "U", 5}, grid_terrain(kSide), Duplicates::kReject, std::nullopt, 1}, other_store, 50000);
+  const Version seen = large.version();
+  server::app::Thinning thinning;
+  for (std::uint64_t id = 200; id < 25000; ++id) thinning.removed.emplace_back(id);
+  thinning.inserted = {{{1500, 7500}, 7}};
+  thinning.reset = {{VertexId(9), seen.terrain->vertex(VertexId(9))->at, 2.5}};
+  const Terrain aside = thinned(*seen.terrain, thinning);
+  ASSERT_TRUE(large.land(seen, thinning, info_).ok());
+  large.read([&](const Terrain& terrain, std::uint64_t) {
+    EXPECT_EQ(terrain.digest(), aside.digest());
+    EXPECT_EQ(terrain.next_id(), aside.next_id());
+    EXPECT_EQ(terrain.amendments(), aside.amendments());
+    EXPECT_EQ(terrain.amendments().own().size(), 24801U) << "without a source, what goes stays a sample";
+    EXPECT_EQ(tin::mesh::validate(terrain.mesh()), std::nullopt);
+  });
+}
+
+TEST_F(TinTest, AThinningThatBringsTooManyVerticesIsRefused) {
+  server::app::Thinning thinning;
+  for (int i = 0; i < 100; ++i) thinning.inserted.push_back({{500 + i, 500}, 1});
+  EXPECT_EQ(tin_.land(tin_.version(), thinning, info_)->vertices_left, 500U);
+  thinning.inserted = {{{700, 500}, 1}};
+  const auto refused = tin_.land(tin_.version(), thinning, info_);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, Code::kTooLarge);
+  EXPECT_EQ(tin_.summary().revision, 2U);
   EXPECT_EQ(broken(), "");
 }
 

@@ -52,7 +52,15 @@ TEST(ConfigTest, EveryNumberOfTheExampleCounts) {
     EXPECT_NE(parsed(changed.dump()), Config{}) << pointer;
     ++numbers;
   }
-  EXPECT_EQ(numbers, 31);
+  EXPECT_EQ(numbers, 34);
+}
+
+TEST(ConfigTest, APublicUrlIsOneOfTheWeb) {
+  EXPECT_EQ(parsed(R"({"public_url":"https://terrain.example.org/a"})").public_url, "https://terrain.example.org/a");
+  EXPECT_EQ(parsed(R"({"public_url":""})").public_url, "");
+  for (const char* wrong : {"7", "\"ftp://a\"", "\"http://a/\"", "\"http://a b\"", "\"http://a?x\"", "\"a.example.org\""}) {
+    expect_error(std::string(R"({"public_url":)") + wrong + "}", Code::kInvalidValue, "/public_url");
+  }
 }
 
 TEST(ConfigTest, TheExampleHasEveryKey) {

@@ -16,6 +16,7 @@ using testing::Random;
 
 Change any_change(Random& random) {
   Change change;
+  change.cause = static_cast<terrain::Cause>(testing::between(random, 0, 2));
   const int steps = testing::between(random, 0, 30);
   for (int i = 0; i < steps; ++i) {
     const std::uint64_t most =
@@ -113,6 +114,18 @@ TEST(ChangeCodecTest, ArbitraryBytesNeverCrash) {
   }
 }
 
+TEST(ChangeCodecTest, OnlyAnEditGoesWithoutItsCauseAndNoOtherCauseIsKnown) {
+  Change change;
+  EXPECT_EQ(encode_change(change)[4], 1);
+  change.cause = terrain::Cause::kSimplification;
+  std::string bytes = encode_change(change);
+  EXPECT_EQ(bytes[4], 2);
+  for (const char cause : {0, 3}) {
+    bytes[6] = cause;
+    EXPECT_FALSE(decode_change(testing::resummed(bytes)).ok()) << int{cause};
+  }
+}
+
 TEST(ChangeCodecTest, HugeCountsAllocateNothing) {
   const std::string head("TNSJ\x01\x00\xff\xff\xff\xff\xff\xff\xff\xff\x7f", 15);
   const auto decoded = decode_change(testing::resummed(head + "...."));
@@ -122,7 +135,7 @@ TEST(ChangeCodecTest, HugeCountsAllocateNothing) {
 
 TEST(ChangeCodecTest, NewerVersionsAreRefused) {
   std::string bytes = encode_change(Change{});
-  bytes[4] = 2;
+  bytes[4] = 3;
   const auto decoded = decode_change(bytes);
   ASSERT_FALSE(decoded.ok());
   EXPECT_EQ(decoded.error().code, base::Code::kUnsupported);

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
 #include "tests/tin/codec/random_values.h"
 #include "tests/tin/codec/resummed.h"
+#include "tin/exact/predicates.h"
 
 namespace tin::codec {
 namespace {
@@ -40,6 +44,25 @@ SourceGrid any_grid(Random& random) {
   return grid;
 }
 
+terrain::Amendments any_amendments(Random& random, bool has_grid) {
+  std::set<exact::Point> touched;
+  std::map<exact::Point, double> own;
+  std::vector<terrain::EditedTriangle> areas;
+  for (int i = testing::between(random, 0, 5); i > 0; --i) touched.insert(testing::any_point(random));
+  for (int i = testing::between(random, 0, 5); i > 0; --i)
+    own.emplace(testing::any_point(random), testing::any_finite(random));
+  for (int i = testing::between(random, 0, 5); i > 0; --i) {
+    terrain::EditedTriangle t{
+        {testing::any_point(random), testing::any_point(random), testing::any_point(random)},
+        static_cast<std::uint8_t>(testing::between(random, 0, 7))};
+    if (exact::orientation(t.corners[0], t.corners[1], t.corners[2]) > 0) areas.push_back(t);
+  }
+  std::vector<terrain::Placement> samples;
+  for (const auto& [at, z] : own) samples.push_back({at, z});
+  const auto kind = has_grid && testing::chance(random, 0.5) ? terrain::SourceKind::kRaster : terrain::SourceKind::kPoints;
+  return {kind, testing::chance(random, 0.5), {touched.begin(), touched.end()}, areas, samples};
+}
+
 Checkpoint any_checkpoint(Random& random) {
   Checkpoint checkpoint;
   checkpoint.revision = random() >> testing::between(random, 0, 63);
@@ -58,6 +81,8 @@ Checkpoint any_checkpoint(Random& random) {
   checkpoint.next_id = VertexId(id + testing::between<std::uint64_t>(random, 1, 5));
   if (checkpoint.next_id.value() == 1 && testing::chance(random, 0.5)) checkpoint.open_resolution = {0.0, 1.5};
   if (testing::chance(random, 0.6)) checkpoint.grid = std::make_shared<const SourceGrid>(any_grid(random));
+  if (testing::chance(random, 0.6))
+    checkpoint.amendments = any_amendments(random, checkpoint.grid != nullptr);
   return checkpoint;
 }
 
@@ -89,6 +114,7 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
   }
   ASSERT_EQ(a.grid == nullptr, b.grid == nullptr);
   if (a.grid) expect_same_grid(*a.grid, *b.grid);
+  EXPECT_EQ(a.amendments, b.amendments);
 }
 
 TEST(CheckpointCodecTest, RandomCheckpointsRoundTrip) {
@@ -181,7 +207,7 @@ TEST(CheckpointCodecTest, GridsReachToTheLatticesEdgeAndNoFurther) {
 
 TEST(CheckpointCodecTest, NewerVersionsAreRefused) {
   std::string bytes = encode_checkpoint(Checkpoint{});
-  bytes[4] = 2;
+  bytes[4] = 3;
   const auto decoded = decode_checkpoint(bytes);
   ASSERT_FALSE(decoded.ok());
   EXPECT_EQ(decoded.error().code, base::Code::kUnsupported);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <new>
 
 #include "tests/support/oracle.h"
 #include "tests/support/point_sets.h"
@@ -94,6 +95,48 @@ TEST_F(BulkTest, EqualPointsShareOneSlotAndSlotsHaveNoGaps) {
   EXPECT_EQ(t.mesh().vertex_slots(), 1001U);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(t.mesh().point(slots[i]), points[i]);
   EXPECT_EQ(tin::mesh::validate(t.mesh()).value_or(""), "");
+}
+
+TEST_F(BulkTest, EqualPointsShareOneSlotOnAnyNumberOfThreads) {
+  auto points = support::random_points(random_, 30'000, kLatticeHalf - 1);
+  for (std::size_t i = 0; i < 90'000; ++i) points.push_back(points[random_() % 30'000]);
+  points.insert(points.end(), 20'000, points[7]);  // more than a thread's share of equal ones
+  Triangulation one;
+  std::vector<VertexSlot> expected;
+  ASSERT_TRUE(one.insert_many(points, expected, nullptr, 1));
+  EXPECT_EQ(one.mesh().vertex_count(), 30'000U);
+  for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(one.mesh().point(expected[i]), points[i]);
+  for (const unsigned threads : {2U, 3U, 7U}) {
+    Triangulation several;
+    std::vector<VertexSlot> slots;
+    ASSERT_TRUE(several.insert_many(points, slots, nullptr, threads));
+    EXPECT_EQ(slots, expected) << threads << " threads";
+    EXPECT_EQ(tin::mesh::validate(several.mesh()).value_or(""), "") << threads << " threads";
+    EXPECT_EQ(triangles(several.mesh()), triangles(one.mesh())) << threads << " threads";
+    EXPECT_EQ(several.hierarchy().levels(), one.hierarchy().levels()) << threads << " threads";
+    for (std::size_t i = 0; i < 1000; ++i) EXPECT_EQ(several.locate(points[i]).vertex, expected[i]);
+  }
+}
+
+TEST_F(BulkTest, WhatIsToBeDoneMeanwhileIsDoneOnceAndItsFailureIsReported) {
+  for (const std::size_t size : {2, 3000}) {
+    for (const unsigned threads : {1U, 2U, 5U}) {
+      const auto points = support::random_points(random_, size, kLatticeHalf - 1);
+      const auto sorted = tin::delaunay::hilbert_sorted(points, threads);
+      const auto empty = [&](Mesh& mesh) {
+        mesh.begin_bulk(points.size());
+        for (std::uint32_t i = 0; i < sorted.size(); ++i) mesh.set_point(VertexSlot(i + 1), points[sorted[i].index]);
+      };
+      int calls = 0;
+      Mesh mesh, failed;
+      empty(mesh);
+      EXPECT_TRUE(tin::delaunay::build_bulk(mesh, threads, nullptr, [&] { ++calls; }));
+      EXPECT_EQ(calls, 1);
+      EXPECT_EQ(tin::mesh::validate(mesh).value_or(""), "");
+      empty(failed);
+      EXPECT_THROW(tin::delaunay::build_bulk(failed, threads, nullptr, [] { throw std::bad_alloc(); }), std::bad_alloc);
+    }
+  }
 }
 
 TEST_F(BulkTest, FewVerticesMakeALineOrNothing) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "tests/support/point_sets.h"
@@ -72,6 +73,59 @@ TEST(TriangleWalkTest, FindsNothingBelowThePlane) {
   EXPECT_TRUE(all_triangles(Terrain{tin::frame::Frame{}}).empty());
   const std::vector<Placement> line{{{0, 0}, 1}, {{1, 1}, 2}, {{2, 2}, 3}};
   EXPECT_TRUE(all_triangles(*Terrain::build({}, line, Duplicates::kReject)).empty());
+}
+
+using Edge = std::array<VertexId, 2>;
+
+std::vector<Edge> all_edges(const Terrain& terrain, TriangleCursor from = {}) {
+  std::vector<Edge> out;
+  tin::query::EdgeWalk walk(terrain, from);
+  while (const auto edge = walk.next()) out.push_back(edge->ids);
+  return out;
+}
+
+/// The sides of all triangles, and how many triangles each has.
+std::map<Edge, int> sides(const Terrain& terrain) {
+  std::map<Edge, int> found;
+  for (const Ids& ids : all_triangles(terrain)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] = std::minmax(ids[i], ids[(i + 1) % 3]);
+      ++found[{a, b}];
+    }
+  }
+  return found;
+}
+
+TEST(EdgeWalkTest, VisitsEverySideOfEveryTriangleOnceInOrder) {
+  const Terrain t = random_terrain(300);
+  const auto expected = sides(t);
+  std::vector<Edge> keys;
+  for (const auto& [edge, count] : expected) keys.push_back(edge);
+  EXPECT_EQ(all_edges(t), keys);
+  EXPECT_EQ(tin::query::edge_count(t), keys.size());
+  tin::query::EdgeWalk walk(t, {});
+  while (const auto edge = walk.next()) EXPECT_EQ(edge->hull, expected.at(edge->ids) == 1);
+}
+
+TEST(EdgeWalkTest, GoesOnFromAnyCursor) {
+  const Terrain t = random_terrain(40);
+  const auto whole = all_edges(t);
+  tin::query::EdgeWalk walk(t, {});
+  for (std::size_t i = 0; i <= whole.size(); ++i) {
+    EXPECT_EQ(all_edges(t, walk.cursor()), std::vector<Edge>(whole.begin() + static_cast<std::ptrdiff_t>(i), whole.end()));
+    walk.next();
+  }
+}
+
+TEST(EdgeWalkTest, JoinsNeighboursOnALine) {
+  EXPECT_TRUE(all_edges(Terrain{tin::frame::Frame{}}).empty());
+  EXPECT_EQ(tin::query::edge_count(Terrain{tin::frame::Frame{}}), 0u);
+  const std::vector<Placement> line{{{2, 2}, 1}, {{0, 0}, 2}, {{5, 5}, 3}, {{4, 4}, 3}};
+  const Terrain t = *Terrain::build({}, line, Duplicates::kReject);
+  const auto id = [](std::uint64_t value) { return VertexId(value); };
+  EXPECT_EQ(all_edges(t), (std::vector<Edge>{{id(1), id(2)}, {id(1), id(4)}, {id(3), id(4)}}));
+  EXPECT_EQ(tin::query::edge_count(t), 3u);
+  EXPECT_EQ(tin::mesh::validate(t.mesh()), std::nullopt);
 }
 
 TEST(WithoutTest, IsTheSameTerrainAsByRemovingOneByOne) {

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <thread>
 
 #include "tests/tin/simplify/judge.h"
@@ -20,25 +22,43 @@ using tin::base::Progress;
 using tin::exact::Point;
 using tin::simplify::Options;
 using tin::simplify::Outcome;
-using tin::simplify::simplify;
+using tin::simplify::Effort;
+using tin::terrain::SourceSamples;
 using tin::terrain::Duplicates;
 using tin::terrain::Edit;
 using tin::terrain::Placement;
 using tin::terrain::Terrain;
 using tin::terrain::VertexId;
 
-Options to(double tolerance) {
-  return {.tolerance = tolerance, .max_vertices = {}};
+Options to(double tolerance, Effort effort = Effort::kFast) {
+  Options options;
+  options.tolerance = tolerance;
+  options.effort = effort;
+  return options;
 }
-Options at_most(std::size_t vertices) {
-  return {.tolerance = {}, .max_vertices = vertices};
+Options at_most(std::size_t vertices, Effort effort = Effort::kFast) {
+  Options options;
+  options.max_vertices = vertices;
+  options.effort = effort;
+  return options;
+}
+Options both(double tolerance, std::size_t vertices) {
+  Options options = to(tolerance);
+  options.max_vertices = vertices;
+  return options;
 }
 
-/// A copy without the vertices removed.
+/// With the vertices as samples.
+auto simplify(const Terrain& terrain, const Options& options, Progress* progress) {
+  return tin::simplify::simplify(terrain, nullptr, {}, options, progress);
+}
+
+/// What becomes of the terrain.
 Terrain applied(const Terrain& source, const Outcome& outcome) {
   Terrain result = source;
   std::vector<Edit> edits;
   for (const VertexId id : outcome.removed) edits.emplace_back(tin::terrain::Remove{id});
+  for (const Placement& vertex : outcome.inserted) edits.emplace_back(tin::terrain::Insert{vertex.at, vertex.z});
   EXPECT_TRUE(result.apply(edits, Duplicates::kReject).ok());
   return result;
 }
@@ -53,18 +73,19 @@ void expect_true_report(const Terrain& source, const Terrain& result, const Outc
   const double above = report.max_error + std::abs(report.max_error) * 1e-9 + 1e-9;
   EXPECT_EQ(support::judge(source, result, above).value_or(""), "");
   EXPECT_LE(report.rmse, report.max_error);
+  EXPECT_EQ(report.samples, source.vertex_count());
+  EXPECT_EQ(std::accumulate(report.histogram.begin(), report.histogram.end(), std::size_t{0}), report.samples);
   ASSERT_EQ(report.worst.has_value(), report.max_error > 0);
   if (!report.worst) return;
   EXPECT_EQ(report.worst->error, report.max_error);
-  EXPECT_EQ(source.vertex(report.worst->id)->at, report.worst->at);
-  EXPECT_FALSE(result.vertex(report.worst->id).has_value());
+  EXPECT_FALSE(report.worst->source_index.has_value());
   if (report.max_error > 1e-6 && report.max_error < 1e100) {
     EXPECT_NE(support::judge(source, result, report.max_error * (1 - 1e-9)).value_or(""), "");
   }
 }
 
-std::size_t expect_within(const Terrain& source, double tolerance) {
-  const auto outcome = simplify(source, to(tolerance), nullptr);
+std::size_t expect_within(const Terrain& source, double tolerance, Effort effort = Effort::kFast) {
+  const auto outcome = simplify(source, to(tolerance, effort), nullptr);
   EXPECT_TRUE(outcome.ok());
   const Terrain result = applied(source, *outcome);
   EXPECT_EQ(support::judge(source, result, tolerance).value_or(""), "") << "tolerance " << tolerance;
@@ -85,6 +106,29 @@ TEST_F(SimplifyTest, KeepsEverySampleOfHardRastersWithinTheTolerance) {
     SCOPED_TRACE(name);
     const Terrain source = support::raster_terrain(raster);
     for (const double tolerance : {0.0, 1e-9, 0.25, 1.0, 3.0, 20.0, 1e9}) expect_within(source, tolerance);
+  }
+}
+
+TEST_F(SimplifyTest, LocalSearchKeepsEverySampleWithinTheToleranceAndNeedsFewer) {
+  for (const auto& [name, raster] : support::hard_rasters(random_, 30)) {
+    SCOPED_TRACE(name);
+    const Terrain source = support::raster_terrain(raster);
+    for (const double tolerance : {0.0, 1.0, 20.0}) {
+      const std::size_t fast = expect_within(source, tolerance);
+      const std::size_t balanced = expect_within(source, tolerance, Effort::kBalanced);
+      const std::size_t thorough = expect_within(source, tolerance, Effort::kThorough);
+      EXPECT_LE(balanced, fast);
+      EXPECT_LE(thorough, fast);
+    }
+  }
+}
+
+TEST_F(SimplifyTest, ScatteredSamplesStayWithinTheToleranceInLocalSearch) {
+  for (const std::int32_t extent : {60, 3000, tin::exact::kLatticeHalf - 1}) {
+    const Terrain source = support::scattered_terrain(random_, 600, extent, extent == 3000);
+    for (const double tolerance : {0.0, 2.0, 10.0}) {
+      EXPECT_LE(expect_within(source, tolerance, Effort::kThorough), expect_within(source, tolerance));
+    }
   }
 }
 
@@ -202,12 +246,129 @@ TEST_F(SimplifyTest, TwoRunsAndTwoHistoriesGiveTheSame) {
   }
 }
 
+TEST_F(SimplifyTest, ThreadsDoNotChangeTheResult) {
+  const auto wave = [&](auto c, auto r) {
+    return std::optional(std::round(200 * std::sin(c * 0.05) * std::cos(r * 0.03) + static_cast<double>(random_() % 9)));
+  };
+  // Several tiles, and several patches.
+  const Terrain source = support::raster_terrain(heights(460, 330, wave));
+  for (Options options : {to(2), to(3, Effort::kBalanced), at_most(4000, Effort::kBalanced)}) {
+    const auto one = simplify(source, options, nullptr);
+    for (const unsigned threads : {2U, 3U}) {
+      options.threads = threads;
+      const auto more = simplify(source, options, nullptr);
+      EXPECT_EQ(one->removed, more->removed);
+      EXPECT_EQ(one->report.max_error, more->report.max_error);
+      EXPECT_EQ(one->report.rmse, more->report.rmse);
+      EXPECT_EQ(one->report.histogram, more->report.histogram);
+    }
+    EXPECT_EQ(tin::mesh::validate(applied(source, *one).mesh()).value_or(""), "");
+  }
+}
+
+TEST_F(SimplifyTest, AnotherSeedGivesAnotherResultWithinTheSameTolerance) {
+  const Terrain source = support::raster_terrain(support::hard_rasters(random_, 60)[0].raster);
+  Options options = to(4, Effort::kBalanced);
+  const auto first = simplify(source, options, nullptr);
+  options.seed = 2;
+  const auto second = simplify(source, options, nullptr);
+  EXPECT_NE(first->removed, second->removed);
+  EXPECT_EQ(support::judge(source, applied(source, *second), 4).value_or(""), "");
+}
+
+TEST_F(SimplifyTest, WhenTimeIsUpTheStateReachedIsReturned) {
+  const Terrain source = support::raster_terrain(support::hard_rasters(random_, 60)[0].raster);
+  for (Options options : {to(4, Effort::kBest), at_most(1200, Effort::kBest)}) {
+    std::atomic<int> questions{0};
+    options.out_of_time = [&] { return ++questions > 40; };
+    const auto stopped = simplify(source, options, nullptr);
+    ASSERT_TRUE(stopped.ok());
+    EXPECT_TRUE(stopped->report.tolerance_met);
+    expect_true_report(source, applied(source, *stopped), *stopped);
+    EXPECT_LT(questions, 400);
+    options.out_of_time = [] { return true; };
+    const auto at_once = simplify(source, options, nullptr);
+    ASSERT_TRUE(at_once.ok());
+    expect_true_report(source, applied(source, *at_once), *at_once);
+    options.effort = Effort::kFast;
+    EXPECT_EQ(at_once->report.max_error, simplify(source, options, nullptr)->report.max_error);
+  }
+}
+
+TEST_F(SimplifyTest, ASecondSimplificationIsHeldAgainstTheFirstSamples) {
+  for (const auto& [name, raster] : support::hard_rasters(random_, 30)) {
+    SCOPED_TRACE(name);
+    const Terrain full = support::raster_terrain(raster);
+    std::vector<double> z;
+    for (const auto& height : raster.z) z.push_back(height.value_or(std::numeric_limits<double>::quiet_NaN()));
+    const auto source = SourceSamples::raster(full.shared_source_grid(), z);
+    Terrain terrain = full;
+    for (const double tolerance : {9.0, 2.0, 30.0, 0.0}) {
+      const auto outcome = tin::simplify::simplify(terrain, &source, {}, to(tolerance), nullptr);
+      ASSERT_TRUE(outcome.ok());
+      terrain = applied(terrain, *outcome);
+      EXPECT_EQ(support::judge(full, terrain, tolerance).value_or(""), "");
+      EXPECT_EQ(terrain.vertex_count(), outcome->report.vertices_after);
+      EXPECT_EQ(outcome->report.samples, full.vertex_count());
+      const auto directly = simplify(full, to(tolerance), nullptr);
+      EXPECT_EQ(outcome->report.max_error, directly->report.max_error);
+      EXPECT_EQ(applied(full, *directly).digest(), terrain.digest());
+      const auto& worst = outcome->report.worst;
+      if (!worst) continue;
+      EXPECT_EQ(source.at(worst->source_index.value()), worst->at);
+      EXPECT_EQ(source.z(worst->source_index.value()), worst->z);
+    }
+  }
+}
+
+TEST_F(SimplifyTest, SamplesNeedNoTerrain) {
+  for (const auto& [name, raster] : support::hard_rasters(random_, 30)) {
+    SCOPED_TRACE(name);
+    const Terrain full = support::raster_terrain(raster);
+    std::vector<double> z;
+    for (const auto& height : raster.z) z.push_back(height.value_or(std::numeric_limits<double>::quiet_NaN()));
+    const auto source = SourceSamples::raster(full.shared_source_grid(), z);
+    const auto chosen = tin::simplify::simplify_samples(source, to(3), nullptr);
+    ASSERT_TRUE(chosen.ok());
+    const Terrain built = *Terrain::build({}, chosen->vertices, Duplicates::kReject);
+    EXPECT_EQ(built.digest(), applied(full, *simplify(full, to(3), nullptr)).digest());
+    EXPECT_EQ(chosen->report.vertices_before, full.vertex_count());
+    EXPECT_EQ(chosen->report.vertices_after, built.vertex_count());
+  }
+  const Terrain scattered = support::scattered_terrain(random_, 400, 900, true);
+  std::vector<Placement> points;
+  for (const auto& vertex : scattered.vertices_by_id()) points.push_back({vertex.at, vertex.z});
+  const auto chosen = tin::simplify::simplify_samples(SourceSamples::points(points), to(4), nullptr);
+  EXPECT_EQ(Terrain::build({}, chosen->vertices, Duplicates::kReject)->digest(),
+            applied(scattered, *simplify(scattered, to(4), nullptr)).digest());
+}
+
+TEST_F(SimplifyTest, OwnSamplesOfPeopleCountBesideTheSource) {
+  const Terrain full = support::raster_terrain(heights(12, 12, [](auto c, auto) { return std::optional<double>(c % 5); }));
+  std::vector<double> z;
+  for (int i = 0; i < 144; ++i) z.push_back(i % 12 % 5);
+  const auto source = SourceSamples::raster(full.shared_source_grid(), z);
+  // One that stands as a vertex, one that does not, both between the pixels.
+  Terrain terrain = applied(full, *simplify(full, to(2), nullptr));
+  ASSERT_TRUE(terrain.apply(std::vector<Edit>{tin::terrain::Insert{{3, 4}, 60}}, Duplicates::kReject).ok());
+  const std::vector<Placement> own{{{10, -3}, -50}};
+  const auto outcome = tin::simplify::simplify(terrain, &source, own, to(1), nullptr);
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_EQ(outcome->report.samples, 146U);
+  const Terrain result = applied(terrain, *outcome);
+  const std::vector<Edit> both{tin::terrain::Insert{{3, 4}, 60}, tin::terrain::Insert{{10, -3}, -50}};
+  Terrain all = full;
+  ASSERT_TRUE(all.apply(both, Duplicates::kReject).ok());
+  EXPECT_EQ(support::judge(all, result, 1).value_or(""), "");
+}
+
 TEST_F(SimplifyTest, ABudgetIsKept) {
   for (const auto& [name, raster] : support::hard_rasters(random_, 24)) {
     SCOPED_TRACE(name);
     const Terrain source = support::raster_terrain(raster);
     for (const std::size_t budget : {30UL, 60UL, 150UL, 1000000UL}) {
-      const auto outcome = simplify(source, at_most(budget), nullptr);
+      const auto effort = budget == 60 ? Effort::kBalanced : Effort::kFast;
+      const auto outcome = simplify(source, at_most(budget, effort), nullptr);
       if (!outcome.ok()) continue;  // a hull of many corners: another test
       EXPECT_LE(outcome->report.vertices_after, budget);
       EXPECT_TRUE(outcome->report.tolerance_met);
@@ -225,11 +386,11 @@ TEST_F(SimplifyTest, ABudgetWinsOverAToleranceAndTheReportSaysSo) {
   };
   const Terrain source = support::raster_terrain(heights(40, 40, wave));
   const std::size_t needed = simplify(source, to(3), nullptr)->report.vertices_after;
-  const auto fits = simplify(source, {.tolerance = 3, .max_vertices = needed}, nullptr);
+  const auto fits = simplify(source, both(3, needed), nullptr);
   EXPECT_EQ(fits->removed, simplify(source, to(3), nullptr)->removed);
   EXPECT_TRUE(fits->report.tolerance_met);
   for (const std::size_t budget : {needed / 2, needed / 8}) {
-    const auto tight = simplify(source, {.tolerance = 3, .max_vertices = budget}, nullptr);
+    const auto tight = simplify(source, both(3, budget), nullptr);
     EXPECT_LE(tight->report.vertices_after, budget);
     EXPECT_FALSE(tight->report.tolerance_met);
     EXPECT_GT(tight->report.max_error, 3);
@@ -307,7 +468,7 @@ TEST_F(SimplifyTest, ALineOfSamplesStaysAsItIs) {
 
 TEST_F(SimplifyTest, ProgressRisesToTheEnd) {
   const Terrain source = support::raster_terrain(support::hard_rasters(random_, 150)[0].raster);
-  for (const Options& options : {to(2), at_most(3000), Options{.tolerance = 2, .max_vertices = 3000}}) {
+  for (const Options& options : {to(2), at_most(3000), both(2, 3000)}) {
     Progress progress;
     bool falls = false;
     std::jthread watcher([&](const std::stop_token& done) {

@@ -1,5 +1,5 @@
-// What is prepared beside readers and editors, because it is large: undoing a revision, and removing many
-// vertices.
+// What is prepared beside readers and editors when it is large: undoing a revision, and taking a
+// simplification in.
 #include <algorithm>
 
 #include "server/app/tin.h"
@@ -22,23 +22,6 @@ constexpr int kAttempts = 3;                  // to land something large without
 constexpr std::size_t kReadBytes = 4U << 20;  // of the journal at once
 constexpr std::size_t kSearched = 64U << 20;  // of the journal, for who is in the way
 
-struct Removal {
-  std::vector<VertexId> ids;
-  Change change;
-};
-
-/// Of `ids`, the vertices that are in `now` as they were in `seen`.
-Removal removal_of_unchanged(const Terrain& seen, const Terrain& now, std::span<const VertexId> ids) {
-  Removal removal;
-  for (const VertexId id : ids) {
-    const auto present = now.vertex(id), then = seen.vertex(id);
-    if (!present || !then || present->at != then->at || present->z != then->z) continue;
-    removal.ids.push_back(id);
-    removal.change.steps.push_back({id, tin::terrain::Placement{present->at, present->z}, std::nullopt});
-  }
-  return removal;
-}
-
 Result<Terrain::Applied> replay(Terrain& terrain, const Change& change) {
   Terrain::Applied applied;
   applied.next_id_before = terrain.next_id();
@@ -55,6 +38,8 @@ Result<std::shared_ptr<Terrain>> replayed(const Terrain& terrain, const Change& 
   auto built = Terrain::restore(terrain.frame(), set.vertices(), set.next_id());
   if (!built) return error(Code::kConflict, "Another vertex stands where one would return to.");
   built->set_source_grid(terrain.shared_source_grid());
+  built->set_amendments(terrain.amendments());
+  built->amend(change);
   return std::make_shared<Terrain>(std::move(*built));
 }
 
@@ -142,46 +127,44 @@ tin::base::Error Tin::explain_conflict(std::uint64_t revision, const Change& inv
   return error(Code::kConflict, why);
 }
 
-Result<Removed> Tin::remove_vertices(const Version& seen, std::span<const VertexId> ids,
-                                     const store::RevisionInfo& info) {
+Result<Landed> Tin::land(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info) {
   const Terms terms{{}, info, std::nullopt};
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const Version base = attempt == 0 ? seen : version();
-    Removal removal = removal_of_unchanged(*seen.terrain, *base.terrain, ids);
-    if (removal.ids.size() <= kSmall) break;
+    Fitting fitting = fit(*seen.terrain, *base.terrain, thinning);
+    if (fitting.change.steps.size() <= kSmall) break;
     Write write(terms);
     write.alone = true;
-    write.prepared = std::make_shared<Terrain>(base.terrain->without(removal.ids));
+    write.prepared = std::make_shared<Terrain>(rebuilt(*base.terrain, fitting));
     write.prepared_from = base.revision;
-    write.change = std::move(removal.change);
+    write.change = std::move(fitting.change);
     const std::size_t left = write.prepared->vertex_count();
     auto done = submit(write);
     if (write.outdated) continue;
     if (!done) return done.error();
-    return Removed{done->revision, left, base.revision != seen.revision};
+    return Landed{done->revision, left, base.revision != seen.revision};
   }
-  return remove_in_place(seen, ids, terms);
+  return land_in_place(seen, thinning, terms);
 }
 
 /// Few vertices, or editors who were quicker each time: now they wait.
-Result<Removed> Tin::remove_in_place(const Version& seen, std::span<const VertexId> ids, const Terms& terms) {
-  Removed removed;
+Result<Landed> Tin::land_in_place(const Version& seen, const Thinning& thinning, const Terms& terms) {
+  Landed landed;
   bool any = false;
   Write write(terms);
-  write.weight = ids.size();
-  write.alone = ids.size() > kSmall;
+  write.weight = thinning.removed.size() + thinning.inserted.size() + thinning.reset.size();
   write.apply = [&](Terrain& terrain) {
-    const Removal removal = removal_of_unchanged(*seen.terrain, terrain, ids);
-    any = !removal.ids.empty();
-    auto done = replay(terrain, removal.change);
-    removed.vertices_left = terrain.vertex_count();
+    const Fitting fitting = fit(*seen.terrain, terrain, thinning);
+    any = !fitting.change.steps.empty();
+    auto done = replay(terrain, fitting.change);
+    landed.vertices_left = terrain.vertex_count();
     return done;
   };
   const auto done = submit(write);
   if (!done) return done.error();
-  removed.revision = done->revision;
-  removed.edited_meanwhile = done->revision - (any ? 1 : 0) != seen.revision;
-  return removed;
+  landed.revision = done->revision;
+  landed.edited_meanwhile = done->revision - (any ? 1 : 0) != seen.revision;
+  return landed;
 }
 
 }  // namespace server::app

@@ -1,0 +1,17 @@
+// The OGC conformance classes that are met, and no others. tests/contract/ogc_test.cc goes through their requirements.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace server::api {
+
+inline constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
+
+/// Of the server at its root: Common and Processes.
+std::span<const std::string> server_conformance();
+/// Of each TIN as a service: Common and Features.
+std::span<const std::string> tin_conformance();
+
+}  // namespace server::api

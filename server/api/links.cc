@@ -1,0 +1,50 @@
+#include "server/api/links.h"
+
+#include <algorithm>
+
+#include "server/web/html.h"
+
+namespace server::api {
+
+std::string base_url(const Config& config, const Request& request) {
+  if (!config.public_url.empty()) return config.public_url;
+  const std::string_view host = request.header("host");
+  const bool plain = std::all_of(host.begin(), host.end(), [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+           std::string_view(".:-_[]").find(c) != std::string_view::npos;
+  });
+  return host.empty() || !plain ? std::string() : "http://" + std::string(host);
+}
+
+void make_absolute(std::vector<proto::Link>& links, const std::string& base) {
+  for (proto::Link& link : links) {
+    if (link.href.starts_with('/')) link.href = base + link.href;
+  }
+}
+
+bool wants_html(const Request& request) {
+  const std::string accept = http::lower_case(request.header("accept"));
+  const auto html = accept.find("text/html"), json = accept.find("json");
+  return html != std::string::npos && (json == std::string::npos || html < json);
+}
+
+Response negotiated(const Request& request, std::string json, std::string_view json_type, const HtmlPage& page) {
+  Response response{200, {{"Content-Type", std::string(json_type)}, {"Vary", "Accept"}}, std::move(json)};
+  if (!wants_html(request)) return response;
+  web::Page html{page.title, page.description, request.path, {}, page.facts, page.columns, page.rows};
+  for (const proto::Link& link : page.links) {
+    html.links.push_back({link.href, link.title.empty() ? link.rel : link.title, link.type});
+  }
+  response.headers[0].second = "text/html; charset=utf-8";
+  response.body = web::render(html);
+  return response;
+}
+
+std::string negotiated_tag(const app::Tin& tin, std::uint64_t revision, const Request& request) {
+  if (!wants_html(request)) return entity_tag(tin, revision, request);
+  std::string tag = entity_tag(tin, revision, request);
+  tag.insert(tag.size() - 1, "-html");
+  return tag;
+}
+
+}  // namespace server::api

@@ -1,0 +1,18 @@
+// tinsmith info: what a file of elevations is.
+#pragma once
+
+#include <string>
+
+namespace server::cli {
+
+struct InfoArguments {
+  std::string file;
+  std::string crs;     // in place of the file's
+  std::string format;  // empty: by its content
+  bool json = false;
+};
+
+/// Reads all of the file. Returns the exit status: 0, or 1 when it is none that can be read.
+int info(const InfoArguments& arguments);
+
+}  // namespace server::cli

@@ -1,0 +1,120 @@
+#include "server/cli/simplify.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "proto/json_write.h"
+#include "proto/processes/simplify.h"
+#include "server/api/processes/simplify.h"
+#include "server/app/import.h"
+#include "server/app/simplify.h"
+#include "server/cli/output_file.h"
+#include "server/cli/terminal.h"
+#include "tin/codec/checkpoint.h"
+
+namespace server::cli {
+
+using tin::base::Code;
+using tin::base::error;
+using tin::base::Result;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kToleranceNotMet = 3;
+
+Result<app::ImportRequest> request_of(const SimplifyArguments& arguments, Clock::time_point start) {
+  if (!arguments.tolerance && !arguments.max_vertices)
+    return error(Code::kInvalidValue, "either --tolerance or --max-vertices is needed");
+  if (arguments.tolerance && !(std::isfinite(*arguments.tolerance) && *arguments.tolerance >= 0))
+    return error(Code::kInvalidValue, "--tolerance must be a number that is not negative");
+  if (arguments.max_seconds && !(*arguments.max_seconds > 0 && *arguments.max_seconds <= 1e9))
+    return error(Code::kInvalidValue, "--max-seconds must be greater than 0");
+  const auto effort = proto::parse_effort(arguments.effort, "");
+  if (!effort) return error(effort.error().code, "--" + effort.error().message);
+  tin::simplify::Options options;
+  options.tolerance = arguments.tolerance;
+  if (arguments.max_vertices) options.max_vertices = static_cast<std::size_t>(*arguments.max_vertices);
+  options.effort = api::processes::effort_of(*effort);
+  options.seed = arguments.seed;
+  options.threads = arguments.threads == 0 ? app::simplify_threads() : arguments.threads;
+  if (arguments.max_seconds) {
+    const auto end = start + std::chrono::duration_cast<Clock::duration>(
+                                 std::chrono::duration<double>(*arguments.max_seconds));
+    options.out_of_time = [end] { return Clock::now() >= end; };
+  }
+  app::ImportRequest request;
+  request.simplify = std::move(options);
+  request.options.file_name = std::filesystem::path(arguments.input).filename();
+  request.options.crs = arguments.crs;
+  request.options.format = arguments.format;
+  request.options.max_pixels = request.options.max_samples = tin::codec::kMaxGridPixels;
+  return request;
+}
+
+void print_json(const SimplifyArguments& arguments, const proto::SimplifyResults& results) {
+  proto::JsonWriter json;
+  json.begin_object();
+  json.key("input").string(arguments.input);
+  json.key("output").string(arguments.output);
+  proto::write_simplify_report(json, results);
+  json.end_object();
+  std::printf("%s\n", json.take().c_str());
+}
+
+void print_text(const SimplifyArguments& arguments, const proto::SimplifyResults& results,
+                const std::string& unit) {
+  const auto ratio = static_cast<double>(results.vertices_after) /
+                     static_cast<double>(results.samples == 0 ? 1 : results.samples) * 100;
+  std::printf("%s: %llu of %llu samples are vertices (%.2f %%)\n", arguments.output.c_str(),
+              static_cast<unsigned long long>(results.vertices_after),
+              static_cast<unsigned long long>(results.samples), ratio);
+  const std::string of = unit.empty() ? "" : " " + unit;
+  std::printf("largest error %.6g%s", results.max_error, of.c_str());
+  if (results.worst) {
+    std::printf(" at %.10g, %.10g", results.worst->x, results.worst->y);
+    if (results.worst->column)
+      std::printf(" (column %llu, row %llu)", static_cast<unsigned long long>(*results.worst->column),
+                  static_cast<unsigned long long>(*results.worst->row));
+  }
+  std::printf("; RMSE %.6g%s; %.2f s\n", results.rmse, of.c_str(), results.seconds);
+}
+
+}  // namespace
+
+int simplify(const SimplifyArguments& arguments) {
+  const auto start = Clock::now();
+  const auto request = request_of(arguments, start);
+  if (!request) return fail("", request.error());
+  if (auto fine = check_output(arguments.output); !fine) return fail(arguments.output, fine.error());
+  tin::base::Progress progress;
+  const CancelOnSignal cancelling(progress);
+  Result<void> written;
+  std::optional<Result<app::ImportedTerrain>> made;
+  {
+    const ProgressBar bar(progress, !arguments.quiet);
+    made.emplace(app::import_terrain(arguments.input, *request, progress));
+    if (*made) written = write_output((*made)->terrain, arguments.output, progress);
+  }
+  if (const int signal = CancelOnSignal::signal(); signal != 0) return 128 + signal;
+  if (!*made) return fail(arguments.input, made->error());
+  if (!written) return fail(arguments.output, written.error());
+  const app::ImportedTerrain& result = **made;
+  auto results = api::processes::results_of(*result.report, result.terrain);
+  results.against_source = true;
+  results.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (arguments.json) {
+    print_json(arguments, results);
+  } else if (!arguments.quiet) {
+    print_text(arguments, results, result.terrain.frame().vertical_unit);
+  }
+  if (results.tolerance_met) return 0;
+  std::fprintf(stderr,
+               "tinsmith: --max-vertices got in the way of --tolerance: the largest error is above it\n");
+  return kToleranceNotMet;
+}
+
+}  // namespace server::cli

@@ -1,0 +1,30 @@
+// tinsmith simplify: the engine without a server.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace server::cli {
+
+/// What stands on the command line.
+struct SimplifyArguments {
+  std::string input;
+  std::string output;
+  std::optional<double> tolerance;
+  std::optional<std::uint64_t> max_vertices;
+  std::optional<double> max_seconds;
+  std::string effort = "balanced";
+  std::uint64_t seed = 1;
+  unsigned threads = 0;  // 0: the processor's
+  std::string crs;       // in place of the file's
+  std::string format;    // of the input; empty: by its content
+  bool json = false;     // the report as JSON
+  bool quiet = false;    // neither report nor bar
+};
+
+/// Returns the exit status: 0; 1 when something is wrong; 3 when --max-vertices got in the way of
+/// --tolerance; 128 and the signal's number when one stopped it, and then nothing is written.
+int simplify(const SimplifyArguments& arguments);
+
+}  // namespace server::cli

@@ -1,0 +1,178 @@
+// tinsmith simplify and tinsmith info: the engine on files, without a server.
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "tests/e2e/dem.h"
+#include "tests/e2e/served.h"
+
+namespace tests::e2e {
+namespace {
+
+namespace fs = std::filesystem;
+using support::Finished;
+
+class FilesTest : public ServedTest {
+ protected:
+  static Finished tinsmith(std::vector<std::string> words) {
+    words.insert(words.begin(), TINSMITH_PROGRAM);
+    return support::run(words);
+  }
+  std::string path(const std::string& name) const { return folder_.path() / name; }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
+  }
+  /// Size x size random heights as an ASCII grid: slow to simplify.
+  std::string noise(int size) const {
+    std::mt19937 random(1);
+    const std::string file = path("noise.asc");
+    std::ofstream out(file);
+    out << "ncols " << size << "\nnrows " << size << "\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    for (int i = 0; i < size * size; ++i) out << random() % 1000 << ((i + 1) % size == 0 ? '\n' : ' ');
+    return file;
+  }
+};
+
+TEST_F(FilesTest, AGeoTiffOfTheResultIsWithinTheToleranceAtEveryPixel) {
+  const Dem dem(sample_file("olinda"));
+  const Finished done =
+      tinsmith({"simplify", dem.file.string(), "--tolerance", "5", "--output", path("out.tif"), "--json"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.err, "") << "no bar where there is no terminal";
+  const Json report = Json::parse(done.out);
+  EXPECT_EQ(report.at("samples"), dem.valid_count());
+  EXPECT_EQ(report.at("certifiedAgainst"), "original samples");
+  EXPECT_EQ(report.at("input"), dem.file.string());
+  const Dem out(path("out.tif"));
+  EXPECT_EQ(out.geotransform, dem.geotransform);
+  double largest = 0;
+  for (int row = 0; row < dem.height; ++row) {
+    for (int column = 0; column < dem.width; ++column) {
+      if (!dem.valid(column, row)) continue;
+      ASSERT_TRUE(out.valid(column, row));
+      largest = std::max(largest, std::abs(out.value(column, row) - dem.value(column, row)));
+    }
+  }
+  EXPECT_LE(largest, 5 + 1e-4);  // pixels are floats
+  EXPECT_NEAR(largest, report.at("maxError").get<double>(), 1e-4);
+}
+
+TEST_F(FilesTest, TheServerComesToTheSameTriangles) {
+  const Dem dem(sample_file("luxembourg"));
+  const Finished done = tinsmith({"simplify", dem.file.string(), "-t", "10", "-o", path("out.geojson"),
+                                  "--effort", "fast", "--quiet", "--threads", "1"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.out + done.err, "");
+  std::ifstream file(path("out.geojson"));
+  const Json triangles = Json::parse(file);
+  const Misses misses = compare(dem, triangles, 10);
+  EXPECT_EQ(misses.beyond + misses.uncovered + misses.strangers, 0U);
+  start();
+  ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);
+  const Json result = served_->simplify({{"tin", "dem"}, {"tolerance", 10}, {"effort", "fast"}});
+  const Json tin = served_->get("/tins/dem");
+  EXPECT_EQ(tin.at("triangleCount"), triangles.at("features").size());
+  EXPECT_EQ(misses.largest > 0, result.at("maxError") > 0);
+}
+
+TEST_F(FilesTest, ABudgetBelowWhatTheToleranceNeedsEndsWithThree) {
+  const std::string input = sample_file("olinda");
+  const Finished done = tinsmith({"simplify", input, "--tolerance", "1", "--max-vertices", "100", "--effort",
+                                  "fast", "--output", path("out.tif"), "--json"});
+  EXPECT_EQ(done.status, 3);
+  EXPECT_NE(done.err.find("--max-vertices"), std::string::npos);
+  const Json report = Json::parse(done.out);
+  EXPECT_FALSE(report.at("toleranceMet"));
+  EXPECT_LE(report.at("verticesAfter"), 100);
+  EXPECT_TRUE(fs::exists(path("out.tif")));
+}
+
+TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
+  const std::string input = sample_file("olinda");
+  const auto expect = [&](const std::vector<std::string>& more, int status, const std::string& word) {
+    std::vector<std::string> words{"simplify"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Finished done = tinsmith(words);
+    EXPECT_EQ(done.status, status) << word << done.err;
+    EXPECT_EQ(done.out, "");
+    EXPECT_NE(done.err.find(word), std::string::npos) << done.err;
+  };
+  const std::string out = path("out.tif");
+  std::ofstream(out) << "as it was";
+  std::ofstream(path("text.txt")) << "no elevations\n";
+  expect({input, "-o", out}, 1, "--tolerance or --max-vertices");
+  expect({input, "-o", out, "-t", "-1"}, 1, "--tolerance");
+  expect({input, "-o", out, "-t", "nan"}, 1, "--tolerance");
+  expect({input, "-o", out, "-t", "much"}, 2, "tolerance");
+  expect({input, "-o", out, "-t", "1", "--effort", "most"}, 1, "--effort");
+  expect({input, "-t", "1"}, 2, "--output");
+  expect({input, "-o", path("out.xyz"), "-t", "1"}, 1, ".geojson");
+  expect({input, "-o", path("no/such/out.tif"), "-t", "1"}, 1, "No such file");
+  expect({path("nowhere.tif"), "-o", out, "-t", "1"}, 1, "nowhere.tif");
+  expect({path("text.txt"), "-o", out, "-t", "1"}, 1, "text.txt");
+  expect({input, "-o", out, "-t", "1", "--crs", "EPSG:1"}, 1, "EPSG:1");
+  std::string text;
+  std::getline(std::ifstream(out), text);
+  EXPECT_EQ(text, "as it was");
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(FilesTest, AnInterruptStopsItWithinASecondAndLeavesNothing) {
+  const std::string input = noise(700);
+  support::Child child(
+      {TINSMITH_PROGRAM, "simplify", input, "-t", "1", "--effort", "best", "-o", path("out.tif")},
+      path("err.txt"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  const auto asked = std::chrono::steady_clock::now();
+  child.signal(SIGINT);
+  EXPECT_EQ(child.wait(), 128 + SIGINT);
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(3))
+      << "a second, on a machine at rest";
+  EXPECT_EQ(files(), 2U) << "the input and what was said";
+}
+
+TEST_F(FilesTest, InfoSaysWhatARasterIs) {
+  const Dem dem(sample_file("luxembourg"));
+  const Finished said = tinsmith({"info", dem.file.string(), "--json"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json info = Json::parse(said.out);
+  EXPECT_EQ(info.at("kind"), "raster");
+  EXPECT_EQ(info.at("format"), "GTiff");
+  EXPECT_EQ(info.at("crs"), "EPSG:4326");
+  EXPECT_EQ(info.at("width"), dem.width);
+  EXPECT_EQ(info.at("height"), dem.height);
+  EXPECT_EQ(info.at("nodata"), *dem.nodata);
+  EXPECT_EQ(info.at("samples"), dem.valid_count());
+  EXPECT_EQ(info.at("geotransform").get<std::vector<double>>(),
+            std::vector<double>(dem.geotransform.begin(), dem.geotransform.end()));
+  double low = 1e300, high = -1e300;
+  for (const double z : dem.values) {
+    if (z == *dem.nodata) continue;
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  EXPECT_EQ(info.at("zRange"), Json::array({low, high}));
+  const Finished text = tinsmith({"info", dem.file.string()});
+  EXPECT_NE(text.out.find("Size: " + std::to_string(dem.width) + " x " + std::to_string(dem.height)),
+            std::string::npos);
+}
+
+TEST_F(FilesTest, InfoSaysWhatPointsAreAndRefusesTheRest) {
+  std::ofstream(path("points.csv")) << "x,y,z\n1,2,3\n4,8,-1.5\n";
+  const Finished said = tinsmith({"info", path("points.csv"), "--crs", "EPSG:32725", "--json"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json info = Json::parse(said.out);
+  EXPECT_EQ(info.at("kind"), "points");
+  EXPECT_EQ(info.at("samples"), 2);
+  EXPECT_EQ(info.at("crs"), "EPSG:32725");
+  EXPECT_EQ(info.at("xRange"), Json::array({1, 4}));
+  EXPECT_EQ(info.at("zRange"), Json::array({-1.5, 3}));
+  EXPECT_EQ(tinsmith({"info", path("nowhere")}).status, 1);
+  EXPECT_EQ(tinsmith({"info"}).status, 2);
+}
+
+}  // namespace
+}  // namespace tests::e2e

@@ -1,0 +1,118 @@
+#include "tin/simplify/fast.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "tin/simplify/decimate.h"
+#include "tin/simplify/greedy.h"
+#include "tin/simplify/tiles.h"
+
+namespace tin::simplify {
+
+using mesh::TriangleSlot;
+using mesh::VertexSlot;
+
+namespace {
+
+constexpr std::size_t kSamplesPerTile = std::size_t{1} << 16;
+
+/// Each sample once, fixed if it is in any place.
+void unite(std::vector<Pin>& pins) {
+  std::sort(pins.begin(), pins.end(), [](const Pin& a, const Pin& b) {
+    return a.sample != b.sample ? a.sample < b.sample : a.fixed && !b.fixed;
+  });
+  const auto same = [](const Pin& a, const Pin& b) { return a.sample == b.sample; };
+  pins.erase(std::unique(pins.begin(), pins.end(), same), pins.end());
+}
+
+bool holds(const terrain::Box& box, exact::Point p) {
+  return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y;
+}
+
+/// The samples of each tile alone, from the corners of their hull and from those in it on that never go.
+bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<const SampleIndex> fixed, double tolerance,
+                    unsigned threads, const Phase& phase, std::vector<Pin>& pins) {
+  std::vector<std::vector<Pin>> found(tiling.size());
+  const bool finished = for_each_tile(tiling.size(), threads, phase, [&](std::size_t tile) {
+    std::vector<Pin> corners;
+    for (const SampleIndex corner : hull_corners(samples, tiling.box(tile))) {
+      corners.push_back({samples.site(corner).z, corner, true});
+    }
+    const terrain::Box box = tiling.box(tile);
+    for (const SampleIndex sample : fixed) {
+      if (holds(box, samples.position(sample))) corners.push_back({samples.site(sample).z, sample, true});
+    }
+    unite(corners);
+    Patch patch(samples, {}, corners);
+    if (patch.mesh().dimension() == 2) {
+      Greedy(patch, tolerance).run(Greedy::kNoBudget, phase.silent());
+      Decimation(patch, tolerance).run(phase.silent());
+    }
+    patch.collect(found[tile]);
+    for (Pin& pin : found[tile]) pin.fixed = false;
+  });
+  for (const auto& part : found) pins.insert(pins.end(), part.begin(), part.end());
+  return finished;
+}
+
+/// Which triangles are known from a tile's own TIN. A triangle with all corners inside one tile is empty of its vertices, so it
+/// was there too; and where a vertex has only such triangles, its star is the same. Unsettles all other vertices.
+std::vector<bool> find_seams(Patch& tin, const Tiling& tiling) {
+  const mesh::Mesh& mesh = tin.mesh();
+  std::vector<std::uint32_t> tile_of(mesh.vertex_slots(), mesh::kNone);
+  for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
+    const exact::Point p = mesh.point(VertexSlot(i));
+    const std::size_t tile = tiling.tile_of(p);
+    if (tiling.is_inside(tile, p)) tile_of[i] = static_cast<std::uint32_t>(tile);
+  }
+  std::vector<bool> on_seam(mesh.triangle_slots(), false);
+  for (std::uint32_t i = 0; i < mesh.triangle_slots(); ++i) {
+    const auto& v = mesh.triangle(TriangleSlot(i)).vertices;
+    if (!mesh.is_alive(TriangleSlot(i))) continue;
+    const std::uint32_t tile = tile_of[v[0].value()];
+    if (tile != mesh::kNone && tile_of[v[1].value()] == tile && tile_of[v[2].value()] == tile) continue;
+    on_seam[i] = true;
+    for (const VertexSlot corner : v) tin.unsettle(corner);
+  }
+  return on_seam;
+}
+
+}  // namespace
+
+bool repair(std::unique_ptr<Patch>& tin, double tolerance, unsigned threads, const Phase& phase) {
+  const std::size_t patches = patch_count(tin->mesh().vertex_count());
+  if (patches > 1) {
+    const Tiling tiling = Tiling::of_about(tin->samples().extent(), patches, 0.5, 0.5);
+    const Phase part = phase.part(0, 0.8);
+    const bool finished = work_in_patches(tin, tiling, threads, part, [&](Patch& patch, std::size_t) {
+      Greedy(patch, tolerance).run(Greedy::kNoBudget, part.silent());
+      Decimation(patch, tolerance).run(part.silent());
+    });
+    if (!finished) return false;
+  }
+  const Phase rest = phase.part(patches > 1 ? 0.8 : 0, 1);
+  const bool finished = Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5)) != Greedy::End::kCancelled &&
+                        Decimation(*tin, tolerance).run(rest.part(0.5, 1));
+  if (!finished) tin.reset();
+  return finished;
+}
+
+std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const SampleIndex> corners, double tolerance,
+                                       unsigned threads, const Phase& phase) {
+  const Extent extent = samples.extent();
+  const Tiling tiling = Tiling::of_about(extent, extent.samples / kSamplesPerTile);
+  std::vector<Pin> pins;
+  for (const SampleIndex corner : corners) pins.push_back({samples.site(corner).z, corner, true});
+  if (!start_in_tiles(samples, tiling, corners, tolerance, threads, phase.part(0, 0.8), pins)) return nullptr;
+  unite(pins);
+  auto tin = std::make_unique<Patch>(samples, std::span<const Pin>(), pins, threads);
+  std::vector<Pin>().swap(pins);
+  const auto on_seam = find_seams(*tin, tiling);
+  const auto suspect = [&on_seam](TriangleSlot t) { return bool{on_seam[t.value()]}; };
+  const Phase rest = phase.part(0.8, 1);
+  if (Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5), suspect) == Greedy::End::kCancelled) return nullptr;
+  if (!Decimation(*tin, tolerance).run(rest.part(0.5, 1))) return nullptr;
+  return tin;
+}
+
+}  // namespace tin::simplify
