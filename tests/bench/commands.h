@@ -10,6 +10,7 @@ namespace bench {
 /// std::runtime_error.
 int run_paper(std::span<const std::string> arguments);
 int run_star(std::span<const std::string> arguments);
+int run_simplify(std::span<const std::string> arguments);
 int run_raster(std::span<const std::string> arguments);
 int run_surface(std::span<const std::string> arguments);
 

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   } kCommands[] = {
       {"paper", bench::run_paper},
       {"star", bench::run_star},     {"build", bench::run_build},   {"insert", bench::run_insert},
-      {"locate", bench::run_locate}, {"remove", bench::run_remove},
+      {"locate", bench::run_locate}, {"remove", bench::run_remove}, {"simplify", bench::run_simplify},
       {"raster", bench::run_raster}, {"surface", bench::run_surface},
   };
   const std::vector<std::string> arguments(argv + 1, argv + argc);

@@ -14,6 +14,11 @@ using mesh::VertexSlot;
 Patch::Patch(const Samples& samples, std::span<const Pin> frozen, std::span<const Pin> owned, unsigned threads)
     : samples_(&samples), owner_{static_cast<std::uint32_t>(frozen.size()) + 1} {
   const std::size_t count = frozen.size() + owned.size();
+  // A few insertions must not double the arrays.
+  const std::size_t room = count + count / 32 + 64;
+  sites_.reserve(room);
+  flags_.reserve(room);
+  mesh_.reserve(room);
   sites_.resize(count + 1);
   flags_.resize(count + 1);
   if (count == 0) return;

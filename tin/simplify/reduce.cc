@@ -32,9 +32,9 @@ int rounds_of(Effort effort) {
     case Effort::kBalanced:
       return 2;
     case Effort::kThorough:
-      return 8;
+      return 14;
     case Effort::kBest:
-      return 60;
+      return 80;
   }
   return 0;
 }

@@ -89,6 +89,9 @@ struct Outcome {
 ///
 /// Requires: `own` ascends by position and shares none with the source; the terrain covers all samples.
 ///
+/// Voids: a cell without a sample binds nothing. Triangles pass over voids, and over bays of the hull, so that the TIN stays
+/// one Delaunay triangulation; what they say there is no terrain, and exports leave it out by the source grid's mask.
+///
 /// `tolerance`: every sample ends up within it, compared as <= on the exact values of the doubles: the
 /// heights, the tolerance, and the interpolated height as a fraction. `max_vertices` alone: the smallest
 /// largest error that was found within the budget. Both: the result for the tolerance if it fits the budget;

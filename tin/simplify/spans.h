@@ -18,15 +18,17 @@ inline constexpr std::int32_t kMostCells = std::int32_t{1} << 18;
 /// below 2^-29, and kEpsilon lies between.
 class Side {
  public:
+  /// What is added to a crossing before it is converted, which rounds towards zero, so towards the left; kBias is then taken off.
+  static constexpr std::int32_t kBias = 2 * kMostCells;
+  static constexpr double kEpsilon = 0x1p-21, kToFloor = kBias + kEpsilon, kToCeil = kBias + 1 - kEpsilon;
+
   /// From `top` to `bottom`; a level side stays at `top`.
   Side(GridPoint top, GridPoint bottom)
       : x_(top.x), slope_(top.y == bottom.y ? 0 : static_cast<double>(bottom.x - top.x) / (bottom.y - top.y)), y_(top.y) {}
-  std::int32_t floor(std::int32_t row) const { return static_cast<std::int32_t>(at(row) + (kBias + kEpsilon)) - kBias; }
-  std::int32_t ceil(std::int32_t row) const { return static_cast<std::int32_t>(at(row) + (kBias + 1 - kEpsilon)) - kBias; }
+  std::int32_t floor(std::int32_t row) const { return static_cast<std::int32_t>(at(row) + kToFloor) - kBias; }
+  std::int32_t ceil(std::int32_t row) const { return static_cast<std::int32_t>(at(row) + kToCeil) - kBias; }
 
  private:
-  static constexpr std::int32_t kBias = 2 * kMostCells;  // conversion rounds towards zero: so towards the left
-  static constexpr double kEpsilon = 0x1p-21;
   double at(std::int32_t row) const { return x_ + (row - y_) * slope_; }
 
   double x_, slope_;

@@ -362,6 +362,27 @@ TEST_F(SimplifyTest, OwnSamplesOfPeopleCountBesideTheSource) {
   EXPECT_EQ(support::judge(all, result, 1).value_or(""), "");
 }
 
+TEST_F(SimplifyTest, WhatIsProtectedStays) {
+  for (const auto& [name, raster] : support::hard_rasters(random_, 30)) {
+    SCOPED_TRACE(name);
+    const Terrain source = support::raster_terrain(raster);
+    for (Options options : {to(5), to(5, Effort::kBalanced), at_most(120, Effort::kBalanced)}) {
+      for (std::uint64_t i = 1; i <= 20 && i <= source.vertex_count(); ++i) {
+        options.protect.push_back(source.vertex(VertexId(1 + i * 7919 % source.vertex_count()))->at);
+      }
+      options.protect.push_back({1 << 28, 3});  // no sample
+      const auto outcome = simplify(source, options, nullptr);
+      if (!outcome.ok()) continue;  // a hull of many corners
+      const Terrain result = applied(source, *outcome);
+      expect_true_report(source, result, *outcome);
+      for (const Point p : options.protect) {
+        const auto where = result.triangulation().locate(p);
+        EXPECT_EQ(where.kind == tin::delaunay::Location::Kind::kOnVertex, p.x != 1 << 28);
+      }
+    }
+  }
+}
+
 TEST_F(SimplifyTest, ABudgetIsKept) {
   for (const auto& [name, raster] : support::hard_rasters(random_, 24)) {
     SCOPED_TRACE(name);
