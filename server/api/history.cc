@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "proto/bbox.h"
 #include "server/api/answer.h"
 #include "server/api/change_stream.h"
 #include "server/api/routes.h"
