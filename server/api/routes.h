@@ -23,7 +23,9 @@ struct Context {
         uploads(with.limits.uploads_at_once),
         exports(with.limits.exports_at_once),
         waiting(with.jobs.sync_waiting),
-        tiles(static_cast<std::size_t>(with.limits.tile_cache_bytes)) {}
+        tiles(static_cast<std::size_t>(with.limits.tile_cache_bytes)),
+        edits(with.limits.edits_at_once),
+        listeners(with.limits.listeners) {}
 
   app::Catalogue& catalogue;
   jobs::JobQueue& jobs;
@@ -35,6 +37,8 @@ struct Context {
   Slots exports;  // rasters being made
   Slots waiting;  // requests that wait for their job
   tiles::TileCache tiles;
+  Slots edits;      // edits being applied or waiting for the disk
+  Slots listeners;  // streams of changes
 };
 
 http::Router make_router(Context& context);
@@ -44,6 +48,7 @@ void add_landing(http::Router& router);
 void add_operations(http::Router& router, Context& context);
 void add_tins(http::Router& router, Context& context);
 void add_edits(http::Router& router, Context& context);
+void add_history(http::Router& router, Context& context);
 void add_elevation(http::Router& router, Context& context);
 void add_tin_service(http::Router& router, Context& context);
 void add_collections(http::Router& router, Context& context);

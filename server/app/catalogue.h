@@ -26,7 +26,8 @@ class Catalogue {
  public:
   /// Loads every TIN of the store. Errors: kStorage, kMalformed, kUnsupported: then the data needs a person.
   static tin::base::Result<std::unique_ptr<Catalogue>> open(std::unique_ptr<store::Store> store,
-                                                            const LimitConfig& limits);
+                                                            const LimitConfig& limits,
+                                                            const HistoryConfig& history = {});
 
   /// By id.
   std::vector<std::shared_ptr<Tin>> list() const;
@@ -53,21 +54,28 @@ class Catalogue {
   /// Errors: kNotFound, kStorage.
   tin::base::Result<void> remove(std::string_view id);
 
+  store::Store& store() { return *store_; }
+
  private:
-  Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits)
+  Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits, const HistoryConfig& history)
       : store_(std::move(store)),
         limits_(limits),
         memory_(limits.memory_bytes == 0 ? default_memory_limit()
                                          : static_cast<std::uint64_t>(limits.memory_bytes),
-                [this] { return held_bytes(); }) {}
+                [this] { return held_bytes(); }),
+        history_(history) {}
   std::uint64_t held_bytes() const;
   tin::base::Result<void> load(const store::TinRecord& record);
   void sweep(const std::stop_token& stop);
+  void sweep_once(const std::stop_token& stop);
+  void keep_up(Tin& tin);
+  void forget_answers();
   tin::base::Result<void> check_room_locked(const std::optional<std::string>& id) const;
 
   std::unique_ptr<store::Store> store_;
   const LimitConfig limits_;
   MemoryBudget memory_;
+  const HistoryConfig history_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Tin>, std::less<>> tins_;
   std::set<std::string, std::less<>> being_created_;

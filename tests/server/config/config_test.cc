@@ -32,7 +32,7 @@ json example() {
 
 /// These hold numbers of 64 bits and nothing else.
 constexpr std::size_t kNumbers =
-    (sizeof(LimitConfig) + sizeof(DecoderConfig) + sizeof(JobConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
+    (sizeof(LimitConfig) + sizeof(DecoderConfig) + sizeof(JobConfig) + sizeof(HistoryConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
 
 TEST(ConfigTest, NothingSetMeansDefaults) {
   EXPECT_EQ(parsed("{}"), Config{});
