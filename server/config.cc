@@ -36,6 +36,7 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/upload_bytes", {&limits.upload_bytes, 1024, 1024 * kGiB}},
           {"/limits/raster_pixels", {&limits.raster_pixels, 1, kGiB}},
           {"/limits/export_pixels", {&limits.export_pixels, 1, 16 * kGiB}},
+          {"/limits/memory_bytes", {&limits.memory_bytes, 0, 1024 * 1024 * kGiB}},
           {"/limits/vertices_per_tin", {&limits.vertices_per_tin, 1, 500 * kMillion}},
           {"/limits/tins", {&limits.tins, 1, kMillion}},
           {"/limits/edits_per_request", {&limits.edits_per_request, 1, 10 * kMillion}},
@@ -48,6 +49,13 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/export_seconds", {&limits.export_seconds, 1, kMillion}},
           {"/limits/page_size", {&limits.page_size, 1, kMillion}},
           {"/limits/page_size_max", {&limits.page_size_max, 1, kMillion}}};
+}
+
+Numbers numbers_of(DecoderConfig& decoder) {
+  return {{"/decoder/memory_bytes", {&decoder.memory_bytes, kGiB, 1024 * kGiB}},
+          {"/decoder/file_bytes", {&decoder.file_bytes, 0, 1024 * kGiB}},
+          {"/decoder/cpu_seconds", {&decoder.cpu_seconds, 1, kMillion}},
+          {"/decoder/seconds", {&decoder.seconds, 1, kMillion}}};
 }
 
 Numbers numbers_of(JobConfig& jobs) {
@@ -67,10 +75,12 @@ Numbers numbers_of(HttpConfig& http) {
           {"/http/header_seconds", {&http.header_seconds, 1, 3600}},
           {"/http/body_bytes_per_second", {&http.body_bytes_per_second, 1, kGiB}},
           {"/http/stall_seconds", {&http.stall_seconds, 1, 3600}},
+          {"/http/compress_from_bytes", {&http.compress_from_bytes, 0, kGiB}},
           {"/http/keep_alive_seconds", {&http.keep_alive_seconds, 1, 3600}},
           {"/http/requests_per_connection", {&http.requests_per_connection, 1, 1000 * kMillion}},
           {"/http/connections", {&http.connections, 1, kMillion}},
           {"/http/connections_per_address", {&http.connections_per_address, 1, kMillion}},
+          {"/http/drain_notice_seconds", {&http.drain_notice_seconds, 0, 600}},
           {"/http/drain_seconds", {&http.drain_seconds, 0, 3600}}};
 }
 
@@ -147,12 +157,70 @@ Result<void> set_log_level(Config& config, const json& value) {
   return invalid("/log_level", "\"debug\", \"info\", \"warning\", \"error\" or \"off\"");
 }
 
+Result<void> set_flag(bool& flag, const json& value, const std::string& pointer) {
+  if (!value.is_boolean()) return invalid(pointer, "true or false");
+  flag = value.get<bool>();
+  return {};
+}
+
+// {"name": "survey", "hash": "sha256:...", "scopes": ["read", "write"]}
+Result<auth::Grant> grant_of(const json& value, const std::string& pointer) {
+  if (!value.is_object()) return invalid(pointer, "an object");
+  auth::Grant grant;
+  grant.read = false;
+  for (const auto& [key, member] : value.items()) {
+    const std::string place = pointer + token(key);
+    if (key == "name") {
+      if (!member.is_string() || member.get<std::string>().empty()) return invalid(place, "a name");
+      grant.name = member.get<std::string>();
+    } else if (key == "hash") {
+      grant.hash = member.is_string() ? member.get<std::string>() : "";
+      if (!auth::is_hash(grant.hash)) return invalid(place, "a hash as `tinsmith token` prints it");
+    } else if (key == "scopes") {
+      if (!member.is_array()) return invalid(place, "an array of \"read\" and \"write\"");
+      for (const json& scope : member) {
+        if (scope != "read" && scope != "write") return invalid(place, "an array of \"read\" and \"write\"");
+        (scope == "read" ? grant.read : grant.write) = true;
+      }
+    } else {
+      return tin::base::error(Code::kUnknownParameter, "there is no such key", place);
+    }
+  }
+  if (grant.name.empty() || grant.hash.empty())
+    return invalid(pointer, "an object with name, hash and scopes");
+  if (!grant.read && !grant.write) return invalid(pointer + "/scopes", "an array of \"read\" and \"write\"");
+  return grant;
+}
+
+Result<void> set_auth(AuthConfig& config, const json& section) {
+  if (!section.is_object()) return invalid("/auth", "an object");
+  for (const auto& [key, value] : section.items()) {
+    const std::string place = "/auth" + token(key);
+    if (key == "anonymous_read" || key == "insecure") {
+      auto set = set_flag(key == "insecure" ? config.insecure : config.anonymous_read, value, place);
+      if (!set) return set;
+    } else if (key == "tokens") {
+      if (!value.is_array()) return invalid(place, "an array of tokens");
+      for (const json& item : value) {
+        auto grant = grant_of(item, place + "/" + std::to_string(config.tokens.size()));
+        if (!grant) return grant.error();
+        config.tokens.push_back(*std::move(grant));
+      }
+    } else {
+      return tin::base::error(Code::kUnknownParameter, "there is no such key", place);
+    }
+  }
+  return {};
+}
+
 Result<void> set_key(Config& config, const std::string& key, const json& value) {
   if (key == "listen") return set_listen(config, value);
   if (key == "data_dir") return set_data_dir(config, value);
   if (key == "public_url") return set_public_url(config, value);
   if (key == "log_level") return set_log_level(config, value);
+  if (key == "auth") return set_auth(config.auth, value);
   if (key == "limits") return set_section(numbers_of(config.limits), value, "/limits");
+  if (key == "decoder") return set_section(numbers_of(config.decoder), value, "/decoder");
   if (key == "jobs") return set_section(numbers_of(config.jobs), value, "/jobs");
   if (key == "http") return set_section(numbers_of(config.http), value, "/http");
   return tin::base::error(Code::kUnknownParameter, "there is no such key", token(key));
@@ -202,6 +270,17 @@ Result<Listen> parse_listen(std::string_view text) {
   }
   return tin::base::error(Code::kInvalidValue,
                           "must be an address and a port, such as 127.0.0.1:8080 or [::1]:8080");
+}
+
+Result<void> check_exposure(const Config& config) {
+  const std::string& address = config.listen.address;
+  const bool loopback = address.starts_with("127.") || address == "::1";
+  if (loopback || !config.auth.tokens.empty() || config.auth.insecure) return {};
+  return tin::base::error(
+      Code::kInvalidValue,
+      "Anybody who reaches " + address +
+          " could read and change everything: set tokens (tinsmith token makes one), listen on "
+          "127.0.0.1 behind a proxy, or say --insecure if that is meant");
 }
 
 Result<Config> parse_config(std::string_view text, std::string_view name) {

@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "server/auth/tokens.h"
 #include "tin/base/result.h"
 
 namespace server {
@@ -26,6 +28,7 @@ struct LimitConfig {
   std::int64_t upload_bytes = std::int64_t{2} << 30;  // of a body that goes to a file
   std::int64_t raster_pixels = 200'000'000;           // of an uploaded raster
   std::int64_t export_pixels = 400'000'000;           // of a raster that is made
+  std::int64_t memory_bytes = 0;  // that terrains, versions and jobs take, estimated; 0: 3/4 of the machine
   std::int64_t vertices_per_tin = 50'000'000;
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;
@@ -39,6 +42,15 @@ struct LimitConfig {
   std::int64_t page_size = 1000;        // when a request does not say
   std::int64_t page_size_max = 10'000;  // the most that it may say; not less than page_size
   friend bool operator==(const LimitConfig&, const LimitConfig&) = default;
+};
+
+/// What the process that reads an uploaded file may use up.
+struct DecoderConfig {
+  std::int64_t memory_bytes = std::int64_t{4} << 30;  // of address space, some 170 MB of libraries included
+  std::int64_t file_bytes = 256 << 20;                // of a temporary file
+  std::int64_t cpu_seconds = 300;
+  std::int64_t seconds = 600;  // in all
+  friend bool operator==(const DecoderConfig&, const DecoderConfig&) = default;
 };
 
 struct JobConfig {
@@ -61,12 +73,23 @@ struct HttpConfig {
   std::int64_t header_seconds = 10;
   std::int64_t body_bytes_per_second = 1024;  // the least, either way
   std::int64_t stall_seconds = 60;            // without any progress of a body
+  std::int64_t compress_from_bytes = 1024;    // of an answer in text, for clients that accept it; 0: never
   std::int64_t keep_alive_seconds = 75;
   std::int64_t requests_per_connection = 1000;
   std::int64_t connections = 1000;
   std::int64_t connections_per_address = 200;
-  std::int64_t drain_seconds = 30;  // for what runs when the server is told to stop
+  std::int64_t drain_notice_seconds = 0;  // between /readyz saying no and the end of new connections
+  std::int64_t drain_seconds = 30;        // for what runs when the server is told to stop
   friend bool operator==(const HttpConfig&, const HttpConfig&) = default;
+};
+
+/// Who may use the server. Without tokens anybody may do anything; then it listens to this machine only,
+/// unless `insecure` says that this is meant (or is seen to elsewhere, by a proxy or a network of one's own).
+struct AuthConfig {
+  std::vector<auth::Grant> tokens;
+  bool anonymous_read = false;  // reading needs no token
+  bool insecure = false;
+  friend bool operator==(const AuthConfig&, const AuthConfig&) = default;
 };
 
 struct Config {
@@ -76,7 +99,9 @@ struct Config {
   /// the end.
   std::string public_url;
   std::string log_level = "info";  // debug, info, warning, error or off
+  AuthConfig auth;
   LimitConfig limits;
+  DecoderConfig decoder;
   JobConfig jobs;
   HttpConfig http;
   friend bool operator==(const Config&, const Config&) = default;
@@ -92,6 +117,10 @@ tin::base::Result<Config> read_config(const std::filesystem::path& file);
 
 /// The configuration in `text`; `name` stands for the file in messages.
 tin::base::Result<Config> parse_config(std::string_view text, std::string_view name);
+
+/// Whether `config` may serve where it listens. Errors: kInvalidValue: beyond this machine, and neither
+/// tokens nor `insecure`.
+tin::base::Result<void> check_exposure(const Config& config);
 
 /// "127.0.0.1:8080", "[::1]:8080" or "localhost:8080" (which is 127.0.0.1). Errors: kInvalidValue.
 tin::base::Result<Listen> parse_listen(std::string_view text);

@@ -2,6 +2,7 @@
 #include "server/api/answer.h"
 #include "server/api/positions.h"
 #include "server/api/routes.h"
+#include "server/obs/metrics.h"
 
 namespace server::api {
 
@@ -48,11 +49,14 @@ Result<Response> edit(Context& context, const Request& request) {
   if (!positions) return positions.error();
   const auto edits = to_world_edits(*message, *positions);
   if (!edits) return edits.error();
+  const std::uint64_t growth = edits->size() * app::kBytesPerVertex + (*tin)->copy_bytes();
+  if (auto room = context.catalogue.memory().check(growth); !room) return room.error();
   const auto edited = (*tin)->edit(*edits, *expected, {app::now_ms(), "", ""});
   if (!edited) {
     const bool has_place = edited.error().where.starts_with("/");
     return has_place ? within("/ops", edited.error()) : edited.error();
   }
+  obs::metrics().edits.fetch_add(edits->size(), std::memory_order_relaxed);
   Response response = json_answer(proto::edit_result_json(edited->revision, edited->ids));
   response.headers.emplace_back("ETag", entity_tag(**tin, edited->revision, request));
   return response;

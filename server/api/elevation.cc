@@ -2,6 +2,11 @@
 #include "tin/query/elevation.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <span>
 
 #include "proto/crs_uri.h"
 #include "server/api/answer.h"
@@ -18,6 +23,8 @@ using tin::terrain::Terrain;
 
 namespace {
 
+constexpr std::string_view kDoubles = "application/octet-stream";
+
 /// The elevation at a position of the TIN's CRS, snapped to the lattice; nothing beyond the lattice either.
 std::optional<tin::query::Elevation> elevation_at(const Terrain& terrain, ElevationQuery& query, double x,
                                                   double y) {
@@ -25,16 +32,49 @@ std::optional<tin::query::Elevation> elevation_at(const Terrain& terrain, Elevat
   return at ? query.at(*at) : std::nullopt;
 }
 
-Result<Response> one(Context& context, const Request& request) {
-  const auto tin = context.catalogue.find(request.path_parameter("tin"));
-  if (!tin) return tin.error();
+/// The parameters of a GET.
+struct Asked {
+  double x = 0, y = 0;
+  proto::Voids voids = proto::Voids::kKeep;
+  tin::query::Interpolation by = tin::query::Interpolation::kLinear;
+};
+
+Result<Asked> read_asked(const Request& request) {
   const auto x = required_number(request, "x"), y = required_number(request, "y");
   if (!x) return x.error();
   if (!y) return y.error();
   const auto voids = proto::parse_voids(request.query_value("voids").value_or("keep"), "query:voids");
   if (!voids) return voids.error();
-  const auto by = proto::parse_interpolation(request.query_value("interpolation").value_or("linear"), "query:interpolation");
+  const auto by = proto::parse_interpolation(request.query_value("interpolation").value_or("linear"),
+                                             "query:interpolation");
   if (!by) return by.error();
+  return Asked{*x, *y, *voids, *by};
+}
+
+proto::ElevationAnswer look_up(const Terrain& terrain, std::uint64_t revision, const Asked& asked,
+                               const std::optional<proto::Position2>& own) {
+  ElevationQuery query(terrain, engine_voids(asked.voids), asked.by);
+  const auto found = own ? elevation_at(terrain, query, own->x, own->y) : std::nullopt;
+  proto::ElevationAnswer out;
+  out.revision = revision;
+  if (found) {
+    out.z = found->z;
+    out.triangle = found->triangle;
+  }
+  return out;
+}
+
+Response one_answer(const app::Tin& tin, const Request& request, const proto::ElevationAnswer& answer) {
+  Response response = json_answer(proto::elevation_json(answer));
+  response.headers.emplace_back("ETag", entity_tag(tin, answer.revision, request));
+  return response;
+}
+
+Result<Response> one(Context& context, const Request& request) {
+  const auto tin = context.catalogue.find(request.path_parameter("tin"));
+  if (!tin) return tin.error();
+  const auto asked = read_asked(request);
+  if (!asked) return asked.error();
   const std::string own_crs =
       (*tin)->read([](const Terrain& terrain, std::uint64_t) { return terrain.frame().crs; });
   std::string asked_crs = own_crs;
@@ -45,48 +85,145 @@ Result<Response> one(Context& context, const Request& request) {
   }
   auto positions = Positions::between(asked_crs, own_crs, "query:crs");
   if (!positions) return positions.error();
-  const auto own = positions->convert(proto::Position2{*x, *y});
+  const auto own = positions->convert(proto::Position2{asked->x, asked->y});
   const auto answer = (*tin)->read([&](const Terrain& terrain, std::uint64_t revision) {
-    ElevationQuery query(terrain, engine_voids(*voids), *by);
-    const auto found = own ? elevation_at(terrain, query, own->x, own->y) : std::nullopt;
-    proto::ElevationAnswer out;
-    out.revision = revision;
-    if (found) {
-      out.z = found->z;
-      out.triangle = found->triangle;
-    }
-    return out;
+    return look_up(terrain, revision, *asked, own);
   });
-  Response response = json_answer(proto::elevation_json(answer));
-  response.headers.emplace_back("ETag", entity_tag(**tin, answer.revision, request));
-  return response;
+  return one_answer(**tin, request, answer);
+}
+
+/// The same on the I/O thread: in the TIN's own CRS, and when no writer is at work. Errors are left to one().
+std::optional<Response> one_at_once(const Context& context, const Request& request) {
+  if (request.query_value("crs")) return std::nullopt;
+  const auto tin = context.catalogue.find(request.path_parameter("tin"));
+  if (!tin) return std::nullopt;
+  const auto asked = read_asked(request);
+  if (!asked) return std::nullopt;
+  if (asked->by != tin::query::Interpolation::kLinear) return std::nullopt;
+  const auto answer = (*tin)->try_read([&](const Terrain& terrain, std::uint64_t revision) {
+    return look_up(terrain, revision, *asked, proto::Position2{asked->x, asked->y});
+  });
+  if (!answer) return std::nullopt;
+  return one_answer(**tin, request, *answer);
+}
+
+/// How positions between samples get their elevation.
+struct Manner {
+  proto::Voids voids = proto::Voids::kKeep;
+  tin::query::Interpolation by = tin::query::Interpolation::kLinear;
+};
+
+constexpr std::size_t kAtOnce = 4096;  // positions that are located together
+
+/// Fills z[begin..end) from positions in the TIN's CRS. Many walks at a time hide the time that memory takes.
+void look_up_block(const Terrain& terrain, const Manner& manner, std::span<const double> x,
+                   std::span<const double> y, std::span<const std::uint8_t> ok, std::size_t begin,
+                   std::size_t end, std::vector<std::optional<double>>& z) {
+  std::vector<tin::exact::Point> points;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (ok[i] == 0) continue;
+    const auto at = terrain.frame().to_lattice(x[i], y[i]);
+    if (!at) continue;  // beyond the lattice: no elevation
+    points.push_back(*at);
+    indices.push_back(i);
+  }
+  const bool has_triangles = terrain.mesh().dimension() == 2;
+  std::vector<tin::delaunay::Location> locations;
+  if (has_triangles) terrain.triangulation().locate_many(points, locations);
+  ElevationQuery query(terrain, engine_voids(manner.voids), manner.by);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (has_triangles) query.start_from(locations[k].triangle);
+    if (const auto found = query.at(points[k])) z[indices[k]] = found->z;
+  }
+}
+
+/// Elevations at positions of `crs`; nothing where there is none.
+Result<std::vector<std::optional<double>>> elevations(const Terrain& terrain, std::string_view crs,
+                                                      std::string where, const Manner& manner,
+                                                      std::vector<double> x, std::vector<double> y) {
+  auto positions = Positions::between(crs, terrain.frame().crs, std::move(where));
+  if (!positions) return positions.error();
+  std::vector<std::uint8_t> ok;
+  positions->convert(x, y, ok);
+  std::vector<std::optional<double>> z(x.size());
+  for (std::size_t begin = 0; begin < x.size(); begin += kAtOnce) {
+    look_up_block(terrain, manner, x, y, ok, begin, std::min(begin + kAtOnce, x.size()), z);
+  }
+  return z;
+}
+
+// Doubles travel as they lie in memory.
+static_assert(std::endian::native == std::endian::little && std::numeric_limits<double>::is_iec559);
+
+/// Positions as pairs of doubles, x and y; the answer is a double each, NaN where there is no elevation.
+Result<Response> many_doubles(const Context& context, const app::Tin& tin, const Request& request) {
+  constexpr std::size_t kPair = 2 * sizeof(double);
+  const std::size_t count = request.body.size() / kPair;
+  if (request.body.size() % kPair != 0)
+    return error(Code::kMalformed,
+                 "The body must be pairs of 64-bit floating-point numbers, x and y of each position.");
+  if (count > static_cast<std::size_t>(context.config.limits.positions_per_request)) {
+    return error(Code::kTooLarge, "A request may have at most " +
+                                      std::to_string(context.config.limits.positions_per_request) +
+                                      " positions.");
+  }
+  const auto voids = proto::parse_voids(request.query_value("voids").value_or("keep"), "query:voids");
+  if (!voids) return voids.error();
+  const auto by = proto::parse_interpolation(request.query_value("interpolation").value_or("linear"),
+                                             "query:interpolation");
+  if (!by) return by.error();
+  std::vector<double> x(count), y(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(&x[i], request.body.data() + i * kPair, sizeof(double));
+    std::memcpy(&y[i], request.body.data() + i * kPair + sizeof(double), sizeof(double));
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i]))
+      return error(Code::kNotFinite, "A coordinate is not a finite number.", "/" + std::to_string(i));
+  }
+  const app::Version version = tin.version();
+  std::string crs = version.terrain->frame().crs;
+  if (const auto text = request.query_value("crs")) {
+    const auto name = proto::parse_crs(*text, "query:crs");
+    if (!name) return name.error();
+    crs = *name;
+  }
+  const auto z = elevations(*version.terrain, crs, "query:crs", {*voids, *by}, std::move(x), std::move(y));
+  if (!z) return z.error();
+  std::string bytes(z->size() * sizeof(double), '\0');
+  for (std::size_t i = 0; i < z->size(); ++i) {
+    const double value = (*z)[i].value_or(std::numeric_limits<double>::quiet_NaN());
+    std::memcpy(bytes.data() + i * sizeof value, &value, sizeof value);
+  }
+  return Response{
+      200,
+      {{"Content-Type", std::string(kDoubles)}, {"ETag", entity_tag(tin, version.revision, request)}},
+      std::move(bytes)};
 }
 
 Result<Response> many(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
+  if (media_type(request) == kDoubles) return many_doubles(context, **tin, request);
+  if (!request.query.empty()) {
+    return error(Code::kUnknownParameter, "With a body of JSON, its parameters are members of it.",
+                 "query:" + request.query.front().first);
+  }
   if (auto json = require_json(request); !json) return json.error();
   const auto message = proto::read_elevation_request(
       request.body, static_cast<std::size_t>(context.config.limits.positions_per_request));
   if (!message) return message.error();
   const app::Version version = (*tin)->version();
-  const std::string& own_crs = version.terrain->frame().crs;
-  auto positions = Positions::between(message->crs.value_or(own_crs), own_crs, "/crs");
-  if (!positions) return positions.error();
   std::vector<double> x, y;
+  x.reserve(message->positions.size());
+  y.reserve(message->positions.size());
   for (const proto::Position2& position : message->positions) {
     x.push_back(position.x);
     y.push_back(position.y);
   }
-  std::vector<std::uint8_t> ok;
-  positions->convert(x, y, ok);
-  ElevationQuery query(*version.terrain, engine_voids(message->voids), message->interpolation);
-  std::vector<std::optional<double>> z(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (ok[i] == 0) continue;
-    if (const auto found = elevation_at(*version.terrain, query, x[i], y[i])) z[i] = found->z;
-  }
-  Response response = json_answer(proto::elevations_json(z, version.revision));
+  const auto z = elevations(*version.terrain, message->crs.value_or(version.terrain->frame().crs), "/crs",
+                            {message->voids, message->interpolation}, std::move(x), std::move(y));
+  if (!z) return z.error();
+  Response response = json_answer(proto::elevations_json(*z, version.revision));
   response.headers.emplace_back("ETag", entity_tag(**tin, version.revision, request));
   return response;
 }
@@ -99,10 +236,13 @@ void add_elevation(http::Router& router, Context& context) {
   router.add({.method = Method::kGet,
               .pattern = pattern,
               .query = {"x", "y", "crs", "voids", "interpolation"},
-              .handler = guarded([&context](Request& request) { return one(context, request); })});
+              .handler = guarded([&context](Request& request) { return one(context, request); }),
+              .quick = [&context](Request& request) { return one_at_once(context, request); }});
   router.add({.method = Method::kPost,
               .pattern = pattern,
+              .query = {"crs", "voids", "interpolation"},
               .body = http::BodyKind::kMemory,
+              .need = http::Need::kRead,
               .handler = guarded([&context](Request& request) { return many(context, request); })});
 }
 

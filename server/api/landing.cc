@@ -1,11 +1,10 @@
-// The landing page, the contract, conformance and health.
+// The landing page, the contract and conformance.
 #include "proto/messages.h"
 #include "proto/openapi.h"
 #include "server/api/answer.h"
 #include "server/api/conformance.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
-#include "server/version.h"
 #include "server/web/pages.h"
 
 namespace server::api {
@@ -40,15 +39,17 @@ Result<Response> conformance(const Request&) {
 }  // namespace
 
 void add_landing(http::Router& router) {
-  router.add({.method = http::Method::kGet, .pattern = "/", .handler = guarded(landing)});
-  router.add({.method = http::Method::kGet, .pattern = "/conformance", .handler = guarded(conformance)});
   router.add({.method = http::Method::kGet,
-              .pattern = "/healthz",
-              .handler = guarded([](Request&) -> Result<Response> {
-                return json_answer(proto::health_json("ok", version()));
-              })});
+              .pattern = "/",
+              .need = http::Need::kNothing,
+              .handler = guarded(landing)});
+  router.add({.method = http::Method::kGet,
+              .pattern = "/conformance",
+              .need = http::Need::kNothing,
+              .handler = guarded(conformance)});
   router.add({.method = http::Method::kGet,
               .pattern = "/api",
+              .need = http::Need::kNothing,
               .handler = guarded([](Request&) -> Result<Response> {
                 return Response{
                     200, {{"Content-Type", std::string(kOpenApiType)}}, std::string(proto::openapi_json())};

@@ -107,6 +107,7 @@ void add_profile(http::Router& router, Context& context) {
       {.method = Method::kPost,
        .pattern = pattern,
        .body = http::BodyKind::kMemory,
+       .need = http::Need::kRead,
        .handler = guarded([&context](Request& request) { return profile_of_many(context, request); })});
   router.add({.method = Method::kGet,
               .pattern = "/tins/{tin}/line-of-sight",

@@ -5,6 +5,7 @@ namespace server::api {
 http::Router make_router(Context& context) {
   http::Router router;
   add_landing(router);
+  add_operations(router, context);
   add_tins(router, context);
   add_edits(router, context);
   add_elevation(router, context);

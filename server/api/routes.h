@@ -1,9 +1,13 @@
 // All resources of the server in one table.
 #pragma once
 
+#include <atomic>
+#include <functional>
+
 #include "server/api/slots.h"
 #include "server/app/catalogue.h"
 #include "server/config.h"
+#include "server/gdal/decoder.h"
 #include "server/http/router.h"
 #include "server/jobs/job_queue.h"
 
@@ -22,6 +26,9 @@ struct Context {
   app::Catalogue& catalogue;
   jobs::JobQueue& jobs;
   const Config& config;
+  gdal::Decoder decoder;  // reads uploads; in this process unless it is told which program to run
+  std::atomic<bool> draining{false};         // the server is about to stop
+  std::function<std::size_t()> connections;  // how many are open; may be empty
   Slots uploads;  // files being read beside the jobs
   Slots exports;  // rasters being made
   Slots waiting;  // requests that wait for their job
@@ -31,6 +38,7 @@ http::Router make_router(Context& context);
 
 // One function per file of this folder.
 void add_landing(http::Router& router);
+void add_operations(http::Router& router, Context& context);
 void add_tins(http::Router& router, Context& context);
 void add_edits(http::Router& router, Context& context);
 void add_elevation(http::Router& router, Context& context);

@@ -76,6 +76,7 @@ void add_slope(http::Router& router, Context& context) {
   router.add({.method = Method::kPost,
               .pattern = pattern,
               .body = http::BodyKind::kMemory,
+              .need = http::Need::kRead,
               .handler = guarded([&context](Request& request) { return many(context, request); })});
 }
 

@@ -98,6 +98,7 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   options.layer = request.query_value("layer").value_or("");
   options.z_field = request.query_value("z-field").value_or("");
   options.max_samples = static_cast<std::uint64_t>(context.config.limits.vertices_per_tin);
+  import.decoder = context.decoder;
   options.max_pixels = static_cast<std::uint64_t>(context.config.limits.raster_pixels);
   if (const auto crs = request.query_value("crs")) {
     const auto name = proto::parse_crs(*crs, "query:crs");

@@ -80,6 +80,12 @@ Result<void> Catalogue::load(const store::TinRecord& record) {
   return {};
 }
 
+std::uint64_t Catalogue::held_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const auto& tin : list()) bytes += tin->held_bytes();
+  return bytes;
+}
+
 std::vector<std::shared_ptr<Tin>> Catalogue::list() const {
   const std::lock_guard lock(mutex_);
   std::vector<std::shared_ptr<Tin>> out;
@@ -115,6 +121,8 @@ Result<std::shared_ptr<Tin>> Catalogue::create(NewTin tin) {
     return error(Code::kTooLarge,
                  "A TIN may have at most " + std::to_string(limits_.vertices_per_tin) + " vertices.");
   }
+  // Its caller has it in memory already; without room for it it goes again.
+  if (auto room = memory_.check(estimated_bytes(tin.terrain)); !room) return room.error();
   const std::string id = tin.id.value_or(make_up_id());
   const std::string checkpoint = Tin::encode(tin.terrain, tin.duplicates, tin.open_resolution, 1);
   {

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/app/memory.h"
 #include "server/app/tin.h"
 #include "server/config.h"
 #include "server/store/store.h"
@@ -41,23 +42,32 @@ class Catalogue {
     std::string source;  // bytes of what it was made of, as its amendments say; empty: none
   };
   /// Stores and serves a new TIN, at revision 1. Errors: kConflict (id taken), kTooLarge (vertices), kTooMany
-  /// (TINs), kStorage.
+  /// (TINs, memory), kStorage.
   tin::base::Result<std::shared_ptr<Tin>> create(NewTin tin);
   /// Whether create() would refuse for the id or the number of TINs: asked before long work. Errors: as
   /// create().
   tin::base::Result<void> check_room(const std::optional<std::string>& id) const;
+  /// The memory that terrains may take.
+  MemoryBudget& memory() { return memory_; }
+  const MemoryBudget& memory() const { return memory_; }
   /// Errors: kNotFound, kStorage.
   tin::base::Result<void> remove(std::string_view id);
 
  private:
   Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits)
-      : store_(std::move(store)), limits_(limits) {}
+      : store_(std::move(store)),
+        limits_(limits),
+        memory_(limits.memory_bytes == 0 ? default_memory_limit()
+                                         : static_cast<std::uint64_t>(limits.memory_bytes),
+                [this] { return held_bytes(); }) {}
+  std::uint64_t held_bytes() const;
   tin::base::Result<void> load(const store::TinRecord& record);
   void sweep(const std::stop_token& stop);
   tin::base::Result<void> check_room_locked(const std::optional<std::string>& id) const;
 
   std::unique_ptr<store::Store> store_;
   const LimitConfig limits_;
+  MemoryBudget memory_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Tin>, std::less<>> tins_;
   std::set<std::string, std::less<>> being_created_;

@@ -12,6 +12,7 @@ class FairSharedMutex {
   void lock();
   void unlock() { mutex_.unlock(); }
   void lock_shared();
+  bool try_lock_shared();
   void unlock_shared() { mutex_.unlock_shared(); }
 
  private:

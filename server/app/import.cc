@@ -64,7 +64,7 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
   progress.begin_phase(0, 0.3);
   gdal::ImportOptions options = request.options;
   options.heights_only = request.simplify.has_value();
-  auto import = gdal::import_file(file, options, &progress);
+  auto import = request.decoder.import_file(file, options, &progress);
   if (!import) return import.error();
   if (request.vertical_unit) {
     import->frame.vertical_unit = request.vertical_unit->name;
@@ -79,6 +79,7 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
 Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
                                         const ImportRequest& request, Progress& progress) {
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
+  if (auto room = catalogue.memory().check(0); !room) return room.error();
   auto made = import_terrain(file, request, progress);
   if (!made) return made.error();
   const auto completeness = made->report ? Completeness::kSomeSamples : Completeness::kAllSamples;

@@ -8,6 +8,7 @@
 
 #include "server/app/catalogue.h"
 #include "server/gdal/crs.h"
+#include "server/gdal/decoder.h"
 #include "server/gdal/import.h"
 #include "tin/simplify/simplify.h"
 
@@ -19,6 +20,7 @@ struct ImportRequest {
   tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
   std::optional<gdal::VerticalUnit> vertical_unit;  // in place of what the file says
   gdal::ImportOptions options;
+  gdal::Decoder decoder;  // who reads the file
   /// Makes a simplified TIN at once. Of a raster only the result is ever triangulated; the samples are kept
   /// all the same.
   std::optional<tin::simplify::Options> simplify;

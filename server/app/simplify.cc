@@ -52,6 +52,10 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
     if (auto room = catalogue.check_room(request.as); !room) return room.error();
   }
   const Version seen = request.tin->version();
+  // The working TIN, and what is left of it at the end.
+  auto memory = catalogue.memory().lease(2 * estimated_bytes(*seen.terrain));
+  if (!memory) return memory.error();
+  std::optional<MemoryBudget::Lease> lease(*std::move(memory));
   Simplified result;
   result.tin = request.tin;
   const auto source = samples_in_force(*request.tin, *seen.terrain, result);
@@ -74,6 +78,7 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   const Thinning thinning{std::move(outcome->removed), std::move(outcome->inserted),
                           std::move(outcome->reset)};
   if (request.as) {
+    lease.reset();  // what is kept of it is counted by create()
     auto made = create_thinned(catalogue, request, *seen.terrain, thinning);
     if (!made) return made.error();
     result.tin = *made;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/app/memory.h"
 #include "server/gdal/crs.h"
 #include "server/obs/log.h"
+#include "server/obs/metrics.h"
 #include "tin/codec/change.h"
 #include "tin/codec/checkpoint.h"
 #include "tin/codec/source.h"
@@ -75,7 +77,7 @@ class UndoUnlessKept {
 
 /// A simplification as it fits the present vertices.
 struct Fitting {
-  std::vector<VertexId> removed;             // ascending
+  std::vector<VertexId> removed;              // ascending
   std::vector<tin::terrain::Vertex> changed;  // with their new heights
   std::vector<tin::terrain::Vertex> added;    // with ids of their own
   Change change;
@@ -109,7 +111,8 @@ Fitting fit(const Terrain& seen, const Terrain& now, const Thinning& thinning) {
   }
   for (const tin::terrain::Vertex& vertex : thinning.reset) {
     if (!is_unchanged(seen, now, vertex.id)) continue;
-    steps.push_back({vertex.id, Placement{vertex.at, now.vertex(vertex.id)->z}, Placement{vertex.at, vertex.z}});
+    steps.push_back(
+        {vertex.id, Placement{vertex.at, now.vertex(vertex.id)->z}, Placement{vertex.at, vertex.z}});
     fitting.changed.push_back(vertex);
   }
   VertexId next = now.next_id();
@@ -164,11 +167,37 @@ Version Tin::version() const {
 
 void Tin::own_terrain() {
   if (versions_out_->load(std::memory_order_acquire) == 0) return;
+  remember_past();
   terrain_ = std::make_shared<Terrain>(*terrain_);
   versions_out_ = std::make_shared<std::atomic<int>>(0);
 }
 
+void Tin::remember_past() {
+  const std::lock_guard lock(past_mutex_);
+  past_.emplace_back(terrain_);
+}
+
+std::uint64_t Tin::held_bytes() const {
+  if (const auto now =
+          try_read([](const Terrain& terrain, std::uint64_t) { return estimated_bytes(terrain); })) {
+    present_bytes_ = *now;
+  }
+  std::uint64_t bytes = present_bytes_;
+  const std::lock_guard lock(past_mutex_);
+  std::erase_if(past_, [](const auto& past) { return past.expired(); });
+  for (const auto& past : past_) {
+    if (const auto terrain = past.lock()) bytes += estimated_bytes(*terrain);
+  }
+  return bytes;
+}
+
+std::uint64_t Tin::copy_bytes() const {
+  const std::shared_lock lock(mutex_);
+  return versions_out_->load(std::memory_order_relaxed) == 0 ? 0 : estimated_bytes(*terrain_);
+}
+
 void Tin::replace_terrain(std::shared_ptr<Terrain> terrain) {
+  if (versions_out_->load(std::memory_order_acquire) != 0) remember_past();
   terrain_ = std::move(terrain);
   versions_out_ = std::make_shared<std::atomic<int>>(0);
 }
@@ -250,7 +279,10 @@ tin::base::Error Tin::too_many_vertices() const {
 /// Writes the next revision, and counts it when it is durable.
 Result<void> Tin::journal(const Change& change, const store::RevisionInfo& info) {
   auto durable = store_.append(id(), revision_ + 1, tin::codec::encode_change(change), info);
-  if (durable) ++revision_;
+  if (durable) {
+    ++revision_;
+    obs::metrics().revisions.fetch_add(1, std::memory_order_relaxed);
+  }
   return durable;
 }
 
@@ -303,7 +335,8 @@ Result<Landed> Tin::land(const Version& seen, const Thinning& thinning, const st
 }
 
 /// Few vertices, or editors who were quicker each time: now they wait.
-Result<Landed> Tin::land_in_place(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info) {
+Result<Landed> Tin::land_in_place(const Version& seen, const Thinning& thinning,
+                                  const store::RevisionInfo& info) {
   std::unique_lock lock(mutex_);
   if (retired_) return gone(id());
   const bool edited_meanwhile = seen.revision != revision_;
@@ -340,7 +373,8 @@ Result<std::shared_ptr<const tin::terrain::SourceSamples>> Tin::source() const {
   if (Source present = source_.lock()) return present;
   const auto bytes = source_bytes();
   if (!bytes) return bytes.error();
-  auto decoded = tin::codec::decode_source(*bytes, kind == tin::terrain::SourceKind::kRaster ? grid : nullptr);
+  auto decoded =
+      tin::codec::decode_source(*bytes, kind == tin::terrain::SourceKind::kRaster ? grid : nullptr);
   if (!decoded) return decoded.error();
   Source source = std::make_shared<const tin::terrain::SourceSamples>(*std::move(decoded));
   source_ = source;

@@ -50,9 +50,9 @@ struct Edited {
 
 /// What a simplification does to the vertices of the version that it saw.
 struct Thinning {
-  std::vector<VertexId> removed;                    // ascending
-  std::vector<tin::terrain::Placement> inserted;    // samples that become vertices again, by position
-  std::vector<tin::terrain::Vertex> reset;          // vertices that get another height, by id
+  std::vector<VertexId> removed;                  // ascending
+  std::vector<tin::terrain::Placement> inserted;  // samples that become vertices again, by position
+  std::vector<tin::terrain::Vertex> reset;        // vertices that get another height, by id
 
   bool empty() const { return removed.empty() && inserted.empty() && reset.empty(); }
 };
@@ -106,8 +106,22 @@ class Tin {
     const std::shared_lock lock(mutex_);
     return f(std::as_const(*terrain_), revision_);
   }
+  /// The same if it can be done without waiting for a writer; nothing otherwise.
+  template <class F>
+  auto try_read(F&& f) const
+      -> std::optional<decltype(f(std::declval<const tin::terrain::Terrain&>(), std::uint64_t{}))> {
+    const std::shared_lock lock(mutex_, std::try_to_lock);
+    if (!lock) return std::nullopt;
+    return f(std::as_const(*terrain_), revision_);
+  }
   Version version() const;
   Summary summary() const;
+
+  /// What the present terrain takes, and those of versions that are out still; as far as known without
+  /// waiting.
+  std::uint64_t held_bytes() const;
+  /// What the next edit will copy because a version is out.
+  std::uint64_t copy_bytes() const;
 
   /// Remembers a version for a while, so that pages can go on from it when edits arrive; see page_version().
   void keep_for_pages(const Version& version) { kept_.keep(version); }
@@ -122,13 +136,15 @@ class Tin {
   tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, std::span<const std::uint64_t> expected,
                                  const store::RevisionInfo& info);
 
-  /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`, and positions
-  /// where another stands by now, stay out of it. A large one is prepared beside readers and editors. Errors:
-  /// kTooLarge (vertices per TIN), kNotFound (retired), kStorage.
-  tin::base::Result<Landed> land(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info);
+  /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`,
+  /// and positions where another stands by now, stay out of it. A large one is prepared beside readers and
+  /// editors. Errors: kTooLarge (vertices per TIN), kNotFound (retired), kStorage.
+  tin::base::Result<Landed> land(const Version& seen, const Thinning& thinning,
+                                 const store::RevisionInfo& info);
 
-  /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store when nobody
-  /// else has them in hand, and given back when the last one lets go. Errors: kNotFound (retired), kStorage, kMalformed.
+  /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store
+  /// when nobody else has them in hand, and given back when the last one lets go. Errors: kNotFound
+  /// (retired), kStorage, kMalformed.
   tin::base::Result<std::shared_ptr<const tin::terrain::SourceSamples>> source() const;
   /// The same as bytes, for another TIN; empty where none are kept. Errors: kNotFound (retired), kStorage.
   tin::base::Result<std::string> source_bytes() const;
@@ -147,7 +163,8 @@ class Tin {
   using Terrain = tin::terrain::Terrain;
 
   tin::base::Error too_many_vertices() const;
-  void own_terrain();  // copies it if a version is out; with mutex_ held
+  void remember_past();  // so that held_bytes() counts it
+  void own_terrain();    // copies it if a version is out; with mutex_ held
   tin::base::Result<std::shared_ptr<Terrain>> fit_open_frame(std::span<const WorldEdit> edits) const;
   tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
   void replace_terrain(std::shared_ptr<Terrain> terrain);
@@ -163,6 +180,9 @@ class Tin {
   mutable FairSharedMutex mutex_;
   std::shared_ptr<Terrain> terrain_;
   mutable std::shared_ptr<std::atomic<int>> versions_out_;  // of terrain_
+  mutable std::mutex past_mutex_;
+  mutable std::vector<std::weak_ptr<const Terrain>> past_;  // those that the present one was copied from
+  mutable std::atomic<std::uint64_t> present_bytes_{0};     // as last seen
   OpenResolution open_resolution_;
   std::uint64_t revision_;
   bool retired_ = false;

@@ -7,6 +7,8 @@
 #include "server/cli/output_file.h"
 #include "server/cli/serve.h"
 #include "server/cli/simplify.h"
+#include "server/cli/token.h"
+#include "server/gdal/decoder.h"
 #include "server/version.h"
 
 namespace server::cli {
@@ -21,6 +23,16 @@ CLI::App* add_serve(CLI::App& app, ServeArguments& arguments) {
   command->add_option("--data", arguments.data, "Folder of the TINs; made if it is not there");
   command->add_option("--config", arguments.config,
                       "Configuration file (JSON); see deploy/config.example.json");
+  command->add_flag("--insecure", arguments.insecure,
+                    "Serve without tokens where other machines can reach it: anybody may do anything");
+  return command;
+}
+
+CLI::App* add_token(CLI::App& app, TokenArguments& arguments) {
+  auto* command =
+      app.add_subcommand("token", "Make a token for a client, and its entry for the configuration");
+  command->add_option("--name", arguments.name, "Whose it is, for the log")->required();
+  command->add_flag("--write", arguments.write, "It may write, too, not only read");
   return command;
 }
 
@@ -69,9 +81,13 @@ int run(int argc, char** argv) {
   ServeArguments serving;
   SimplifyArguments simplifying;
   InfoArguments informing;
+  TokenArguments token;
   add_serve(app, serving);
   const auto* simplify_command = add_simplify(app, simplifying);
   const auto* info_command = add_info(app, informing);
+  const auto* token_command = add_token(app, token);
+  // How the server runs itself again to read an uploaded file; not for people.
+  const auto* decode_command = app.add_subcommand("decode")->group("");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -79,6 +95,8 @@ int run(int argc, char** argv) {
   }
   if (simplify_command->parsed()) return simplify(simplifying);
   if (info_command->parsed()) return info(informing);
+  if (token_command->parsed()) return print_token(token);
+  if (decode_command->parsed()) return gdal::run_decoder();
   return serve(serving);
 }
 

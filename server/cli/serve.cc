@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "server/api/access.h"
 #include "server/api/answer.h"
 #include "server/api/routes.h"
 #include "server/app/catalogue.h"
@@ -15,6 +16,7 @@
 #include "server/http/server.h"
 #include "server/jobs/job_queue.h"
 #include "server/obs/log.h"
+#include "server/obs/metrics.h"
 #include "server/store/sqlite_store.h"
 
 namespace server::cli {
@@ -41,6 +43,8 @@ Result<Config> read_arguments(const ServeArguments& arguments) {
     config.listen = *listen;
   }
   if (arguments.data) config.data_dir = *arguments.data;
+  if (arguments.insecure) config.auth.insecure = true;
+  if (auto fine = check_exposure(config); !fine) return fine.error();
   return config;
 }
 
@@ -62,6 +66,7 @@ http::ServerOptions http_options(const Config& config) {
   options.memory_body_limit = static_cast<std::uint64_t>(config.limits.body_bytes_memory);
   options.file_body_limit = static_cast<std::uint64_t>(config.limits.upload_bytes);
   options.min_bytes_per_second = static_cast<std::uint64_t>(config.http.body_bytes_per_second);
+  options.compress_from_bytes = static_cast<std::size_t>(config.http.compress_from_bytes);
   options.requests_per_connection = static_cast<int>(config.http.requests_per_connection);
   options.max_connections = static_cast<int>(config.http.connections);
   options.max_connections_per_address = static_cast<int>(config.http.connections_per_address);
@@ -69,14 +74,25 @@ http::ServerOptions http_options(const Config& config) {
   options.keep_alive_timeout = seconds(config.http.keep_alive_seconds);
   options.stall_timeout = seconds(config.http.stall_seconds);
   options.drain_timeout = seconds(config.http.drain_seconds);
+  options.gate = api::make_gate(auth::Tokens(config.auth.tokens), config.auth.anonymous_read);
   options.upload_dir = config.data_dir / "uploads";
   return options;
 }
 
+gdal::Decoder decoder(const Config& config) {
+  return {"/proc/self/exe",
+          {static_cast<std::uint64_t>(config.decoder.memory_bytes),
+           static_cast<std::uint64_t>(config.decoder.file_bytes),
+           static_cast<int>(config.decoder.cpu_seconds), static_cast<int>(config.decoder.seconds)}};
+}
+
 http::Observer observer() {
   return {[](const http::Access& access) {
+            obs::metrics().http.record(access.method, access.route, access.status, access.seconds,
+                                       access.bytes_sent);
             obs::log_info("request", {{"id", access.request_id},
                                       {"peer", access.peer},
+                                      {"client", access.client},
                                       {"method", access.method},
                                       {"route", access.route},
                                       {"path", access.path},
@@ -135,13 +151,18 @@ int serve(const ServeArguments& arguments) {
                        static_cast<std::size_t>(config->jobs.queued),
                        static_cast<std::size_t>(config->jobs.kept)});
   api::Context context{**catalogue, jobs, *config};
+  context.decoder = decoder(*config);
   http::Server server(http_options(*config), api::make_router(context), api::error_pages(), observer());
+  context.connections = [&server] { return server.connections(); };
   const auto port = server.start();
   if (!port) return fail(port.error());
   std::printf("Tinsmith serves %zu TINs at %s\n", (*catalogue)->list().size(),
               url(config->listen, *port).c_str());
   std::fflush(stdout);
   obs::log_info("stopping", {{"signal", wait_for_stop(signals)}});
+  // Load balancers that ask /readyz have this long to send nothing more before connections are refused.
+  context.draining = true;
+  std::this_thread::sleep_for(std::chrono::seconds(config->http.drain_notice_seconds));
   // Both drain at once: requests may wait for jobs, jobs for nobody.
   std::jthread jobs_draining([&] { jobs.drain(std::chrono::seconds(config->http.drain_seconds)); });
   server.stop();

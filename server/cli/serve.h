@@ -11,6 +11,7 @@ struct ServeArguments {
   std::optional<std::string> listen;
   std::optional<std::string> data;
   std::optional<std::string> config;
+  bool insecure = false;
 };
 
 /// Serves until SIGTERM or SIGINT, then drains. Returns the exit status.

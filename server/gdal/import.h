@@ -52,7 +52,7 @@ struct Import {
   std::string driver;                              // GDAL's name of the format, or "CSV"
 };
 
-/// Reads an uploaded file, which stays where it is. Only formats of a fixed list are tried, on a private link
+/// Reads an uploaded file, which stays where it is, in this process: see decoder.h for hostile ones. Only formats of a fixed list are tried, on a private link
 /// to the file without its neighbours, and no network, VRT or sidecar file can be reached by what it says.
 ///
 /// Rasters: band 1, pixel centres, scale and offset applied; pixels that are nodata, masked, not finite or

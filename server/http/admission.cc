@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kRequestFields =
     "Accept, Authorization, Content-Disposition, Content-Type, If-Match, If-None-Match, "
-    "Last-Event-ID, Prefer";
+    "Last-Event-ID, Prefer, X-Request-Id";
 
 Response describe_options(const std::vector<Method>& allowed) {
   Response response;
@@ -74,6 +74,8 @@ Admission admit(Head& head, std::string request_id, const Router& router, const 
     admission.answer =
         pages.status(405, "this resource does not know the method " + std::string(method_name(head.method)));
     admission.answer->headers.emplace_back("Allow", allow_list(match.allowed));
+  } else if (auto refusal = options.gate ? options.gate(request, *match.route) : std::nullopt) {
+    admission.answer = std::move(refusal);
   } else if (const auto known = check_query(*match.route, request.query); !known) {
     admission.answer = pages.error(known.error());
   } else {
@@ -86,6 +88,15 @@ Response too_large(const ErrorPages& pages, std::uint64_t limit) {
   return pages.error(tin::base::error(
       tin::base::Code::kTooLarge,
       "the request body is larger than the " + std::to_string(limit) + " bytes allowed here"));
+}
+
+std::optional<Response> call_quick_handler(const Route& route, Request& request) {
+  if (!route.quick) return std::nullopt;
+  try {
+    return route.quick(request);
+  } catch (const std::exception&) {
+    return std::nullopt;  // the handler will meet the same, and say so
+  }
 }
 
 Response call_handler(const Route& route, Request& request, const ErrorPages& pages,

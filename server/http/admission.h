@@ -30,4 +30,7 @@ Response too_large(const ErrorPages& pages, std::uint64_t limit);
 Response call_handler(const Route& route, Request& request, const ErrorPages& pages,
                       const Observer& observer);
 
+/// Calls the quick handler, if there is one; its exceptions mean that it does not answer.
+std::optional<Response> call_quick_handler(const Route& route, Request& request);
+
 }  // namespace server::http

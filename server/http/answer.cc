@@ -6,6 +6,7 @@
 #include <ctime>
 #include <optional>
 
+#include "server/http/compress.h"
 #include "server/http/files.h"
 #include "tin/base/check.h"
 
@@ -31,29 +32,34 @@ constexpr std::array<std::string_view, 3> kOfTheBody = {"content-type", "content
 constexpr std::string_view kCors =
     "Access-Control-Allow-Origin: *\r\n"
     "Access-Control-Expose-Headers: ETag, Location, Link, Content-Crs, X-Request-Id, Preference-Applied, "
-    "Retry-After\r\n";
+    "Retry-After, WWW-Authenticate\r\n";
 
 template <class List>
 bool contains(const List& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-std::string http_date() {
+/// Of this second; made once in it for each thread.
+const std::string& http_date() {
+  thread_local std::time_t made_at = -1;
+  thread_local std::string date;
   const std::time_t now = std::time(nullptr);
+  if (now == made_at) return date;
   std::tm utc{};
   gmtime_r(&now, &utc);
   std::array<char, 40> text{};
   const std::size_t size = std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc);
-  return std::string(text.data(), size);
+  date.assign(text.data(), size);
+  made_at = now;
+  return date;
 }
 
 /// A handler that echoes what a client sent must not let it begin a new line.
-std::string one_line(std::string text) {
-  for (char& c : text) {
+void append_one_line(std::string& head, std::string_view text) {
+  for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) c = ' ';
+    head += byte < 0x20 || byte == 0x7f ? ' ' : c;
   }
-  return text;
 }
 
 std::string_view field(const NamedValues& headers, std::string_view lower_name) {
@@ -65,6 +71,42 @@ std::string_view field(const NamedValues& headers, std::string_view lower_name) 
 
 bool reading(Method method) {
   return method == Method::kGet || method == Method::kHead;
+}
+
+/// The entity tag of an encoded body: two bodies that differ may not share a strong tag.
+std::string tag_of_encoding(std::string_view tag, Encoding encoding) {
+  if (encoding == Encoding::kIdentity || tag.empty() || tag.back() != '"') return std::string(tag);
+  std::string changed(tag.substr(0, tag.size() - 1));
+  return changed.append("-").append(encoding_name(encoding)).append("\"");
+}
+
+/// How the body is to be encoded, and whether that depends on what the client accepts.
+struct Coding {
+  Encoding encoding = Encoding::kIdentity;
+  bool varies = false;
+};
+
+Coding choose_coding(const Response& response, const AnswerContext& context) {
+  Coding coding;
+  if (context.compress_from == 0 || context.minor == 0 || response.status != 200) return coding;
+  if (std::holds_alternative<FileBody>(response.body)) return coding;
+  if (!field(response.headers, "content-encoding").empty()) return coding;
+  if (!compressible(field(response.headers, "content-type"))) return coding;
+  const auto* text = std::get_if<std::string>(&response.body);
+  if (text != nullptr && text->size() < context.compress_from) return coding;
+  coding.varies = true;
+  coding.encoding = choose_encoding(context.accept_encoding);
+  return coding;
+}
+
+void encode_body(Response& response, const AnswerContext& context, Encoding encoding) {
+  if (encoding == Encoding::kIdentity || context.method == Method::kHead) return;
+  if (auto* text = std::get_if<std::string>(&response.body)) {
+    *text = compress(*text, encoding);
+  } else {
+    auto& source = std::get<std::unique_ptr<BodySource>>(response.body);
+    source = compressing(std::move(source), encoding);
+  }
 }
 
 /// Settles status, framing and body; returns the length to state, if one is to be stated.
@@ -123,23 +165,44 @@ Answer make_answer(Response response, const AnswerContext& context) {
   Answer answer;
   answer.status = response.status;
   answer.keep_alive = context.keep_alive;
+  const Coding coding = choose_coding(response, context);
+  for (auto& [name, value] : response.headers) {
+    if (lower_case(name) == "etag") value = tag_of_encoding(value, coding.encoding);
+  }
   const bool unchanged = response.status == 200 && reading(context.method) &&
                          none_match_hits(context.if_none_match, field(response.headers, "etag"));
-  if (unchanged) answer.status = 304;
-  const std::optional<std::uint64_t> length = settle_body(response, context, answer);
+  if (unchanged) {
+    answer.status = 304;
+  } else {
+    encode_body(response, context, coding.encoding);
+  }
+  std::optional<std::uint64_t> length = settle_body(response, context, answer);
 
   const auto reason =
       boost::beast::http::obsolete_reason(static_cast<boost::beast::http::status>(answer.status));
   std::string& head = answer.head;
-  head =
-      "HTTP/1.1 " + std::to_string(answer.status) + " " + std::string(reason.data(), reason.size()) + "\r\n";
-  head += "Date: " + http_date() + "\r\nServer: tinsmith\r\nX-Request-Id: " + context.request_id + "\r\n";
-  head += kCors;
+  head.reserve(512);
+  head.append("HTTP/1.1 ").append(std::to_string(answer.status)).append(" ");
+  head.append(reason.data(), reason.size());
+  head.append("\r\nDate: ").append(http_date());
+  head.append("\r\nServer: tinsmith\r\nX-Request-Id: ")
+      .append(context.request_id)
+      .append("\r\n")
+      .append(kCors);
   for (const auto& [name, value] : response.headers) {
     const std::string lower = lower_case(name);
     if (contains(kReserved, lower) || (unchanged && contains(kOfTheBody, lower))) continue;
-    head += one_line(name) + ": " + one_line(value) + "\r\n";
+    append_one_line(head, name);
+    head += ": ";
+    append_one_line(head, value);
+    head += "\r\n";
   }
+  if (coding.varies) head += "Vary: Accept-Encoding\r\n";
+  // HEAD does not make the body, so its length is not known where it would be encoded.
+  const bool encoded = coding.encoding != Encoding::kIdentity;
+  if (encoded && !unchanged)
+    head += "Content-Encoding: " + std::string(encoding_name(coding.encoding)) + "\r\n";
+  if (encoded && context.method == Method::kHead) length.reset();
   if (length) head += "Content-Length: " + std::to_string(*length) + "\r\n";
   if (answer.framing == Framing::kChunked) head += "Transfer-Encoding: chunked\r\n";
   if (!answer.keep_alive) {

@@ -17,6 +17,8 @@ struct AnswerContext {
   bool keep_alive = true;  // false: this is the last answer on the connection
   std::string request_id;
   std::string if_none_match;  // of the request; "" if it had none
+  std::string accept_encoding;
+  std::size_t compress_from = 0;  // bytes of a body that is worth it; 0: never
 };
 
 enum class Framing {

@@ -1,10 +1,15 @@
-// Takes a request's body out of its framing, by Beast's parser behind the framing guard. Knows no sockets.
+// Takes a request's body out of its framing, as the framing guard has read it. Knows no sockets.
+//
+// Our own reader, since Beast 1.74 reads a chunk's extension differently when it comes in pieces (an open
+// quotation mark goes on over the end of the line), and so sees another end of the request. Here such a line
+// is refused, and so is all else that the grammar (RFC 9112, 7.1) does not have.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <limits>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "server/http/framing.h"
@@ -14,8 +19,8 @@ namespace server::http {
 class BodyParser {
  public:
   enum class State {
-    kAgain,     // call again with the rest of the input
-    kNeedMore,  // call again with the rest of the input and more
+    kAgain,     // call again with the rest of the input: the block is full
+    kNeedMore,  // the input is used up; call again with more
     kDone,
     kTooLarge,  // a Content-Length or the chunks so far are over the limit
     kBroken,
@@ -28,23 +33,45 @@ class BodyParser {
     std::size_t filled = 0;
   };
 
-  BodyParser();
-  ~BodyParser();
+  explicit BodyParser(const Head& head);
 
-  /// Takes the head that the guard read as `head`. Returns whether both see the same framing.
-  bool begin(std::string_view raw, const Head& head);
-
-  /// The most bytes that the body may have: of a chunk this is judged by its header.
-  void set_limit(std::uint64_t bytes);
+  /// The most bytes that the body may have (of a chunk this is judged by its header), and that extensions and
+  /// trailer may have together.
+  void set_limits(std::uint64_t body_bytes, std::size_t framing_bytes);
 
   Step parse(std::string_view input, std::span<char> block);
 
-  /// Whether the body has been read whole; true from begin() on if there is none.
-  bool done() const;
+  /// Whether the body has been read whole; true from the beginning if there is none.
+  bool done() const { return at_ == At::kEnd; }
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  enum class At {
+    kSize,       // digits of a chunk's size
+    kExtension,  // what follows them on the line
+    kSizeLf,     // the line feed that ends the line
+    kData,       // of a chunk, or of a body with a length
+    kDataCr,
+    kDataLf,
+    kTrailer,  // a line after the last chunk
+    kTrailerLf,
+    kEnd,
+    kBroken,
+    kTooLarge,
+  };
+
+  void take_framing(char c);
+  void take_size(char c);
+  void take_of_line(char c);
+  void end_size_line();
+  void end_trailer_line();
+
+  const bool chunked_;
+  At at_;
+  std::uint64_t left_ = 0;  // of the data of this chunk, or of the body
+  std::uint64_t body_left_ = std::numeric_limits<std::uint64_t>::max();
+  std::size_t framing_left_ = std::numeric_limits<std::size_t>::max();
+  int digits_ = 0;
+  std::string line_;  // an extension or a field of the trailer, as far as it has come
 };
 
 }  // namespace server::http

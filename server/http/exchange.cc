@@ -1,9 +1,24 @@
 #include "server/http/exchange.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace server::http {
+namespace {
+
+/// Whether a client's own request id may stand in our log and answers: a proxy's, or a trace's.
+bool may_be_id(std::string_view id) {
+  constexpr std::size_t kMostBytes = 128;
+  constexpr std::string_view kSymbols = "-_.:/+=@";
+  return !id.empty() && id.size() <= kMostBytes && std::all_of(id.begin(), id.end(), [&](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           kSymbols.find(c) != std::string_view::npos;
+  });
+}
+
+}  // namespace
 
 Exchange::Exchange(SessionContext& shared, const std::string& peer) : shared_(shared) {
   context_.request_id = shared_.id_prefix + std::to_string(++shared_.requests);
@@ -27,11 +42,23 @@ void Exchange::admit(Head& head) {
   context_.method = head.method;
   context_.minor = head.minor;
   access_.method = method_name(head.method);
+  for (const auto& [name, value] : head.headers) {
+    if (name == "x-request-id" && may_be_id(value)) context_.request_id = access_.request_id = value;
+  }
   admission_ = http::admit(head, context_.request_id, shared_.router, shared_.pages, shared_.options);
   admission_.request.aborted = &shared_.aborted;
   access_.path = admission_.request.path;
+  access_.client = admission_.request.client;
   if (admission_.route != nullptr) access_.route = admission_.route->pattern;
   context_.if_none_match = admission_.request.header("if-none-match");
+  context_.accept_encoding = admission_.request.header("accept-encoding");
+  context_.compress_from = shared_.options.compress_from_bytes;
+}
+
+std::optional<Answer> Exchange::handle_quickly() {
+  std::optional<Response> response = call_quick_handler(*admission_.route, admission_.request);
+  if (!response) return std::nullopt;
+  return reply(*std::move(response));
 }
 
 Answer Exchange::handle() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "server/http/admission.h"
@@ -26,6 +27,9 @@ class Exchange {
 
   /// Calls the handler and makes its answer. Requires: an admission without an answer, the body read.
   Answer handle();
+
+  /// Makes the answer of a quick handler, if that gives one.
+  std::optional<Answer> handle_quickly();
 
   /// Makes an answer without a handler.
   Answer reply(Response response);

@@ -19,10 +19,6 @@ bool consists_of(std::string_view text, std::string_view symbols) {
                      [&](char c) { return alphanumeric(c) || symbols.find(c) != std::string_view::npos; });
 }
 
-bool is_token(std::string_view text) {
-  return !text.empty() && consists_of(text, kTokenSymbols);
-}
-
 /// Visible ASCII, bytes above it, spaces and tabs: what a field value may hold.
 bool is_field_value(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) {
@@ -214,6 +210,16 @@ std::size_t find_head_end(std::string_view text, std::size_t from) {
     if (text.substr(i + 1, 2) == "\r\n") return i + 3;
   }
   return std::string_view::npos;
+}
+
+bool is_token(std::string_view text) {
+  return !text.empty() && consists_of(text, kTokenSymbols);
+}
+
+bool is_field_line(std::string_view line) {
+  const std::size_t colon = line.find(':');
+  return colon != std::string_view::npos && is_token(line.substr(0, colon)) &&
+         is_field_value(line.substr(colon + 1));
 }
 
 std::variant<Head, Refusal> read_head(std::string_view raw, const HeadLimits& limits) {

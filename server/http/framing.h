@@ -46,6 +46,12 @@ struct HeadLimits {
 /// bytes before the end of what was searched already.
 std::size_t find_head_end(std::string_view text, std::size_t from);
 
+/// Whether `text` is a token: what names are made of (RFC 9110, 5.6.2).
+bool is_token(std::string_view text);
+
+/// Whether `line` (without its end) is one field, "name: value", not folded.
+bool is_field_line(std::string_view line);
+
 /// Reads a head, from the method to the empty line and no further.
 ///
 /// Requires: `raw` was cut where find_head_end() says.

@@ -37,7 +37,8 @@ struct Request {
   NamedValues headers;              // names in lower case; repeated fields joined with ", "
   std::string body;                 // when the route takes it in memory
   std::filesystem::path body_file;  // when the route takes it as a file: gone after the handler returned
-  std::string id;                   // also the answer's X-Request-Id
+  std::string id;                   // the client's X-Request-Id if it is sound, else ours; also the answer's
+  std::string client;               // who asks, as far as the gate knows; for the log
   const std::atomic<bool>* aborted = nullptr;  // set when the server will not wait for the answer any more
 
   /// The value of a query parameter, if it was sent.
@@ -89,6 +90,10 @@ struct Response {
 };
 
 using Handler = std::function<Response(Request&)>;
+
+/// Answers at once or not at all: it runs on the thread that serves many connections, so it must neither wait
+/// nor take more than some microseconds. Nothing: the route's handler is called on a worker instead.
+using QuickHandler = std::function<std::optional<Response>(Request&)>;
 
 /// ASCII letters to lower case; every other byte stays.
 std::string lower_case(std::string_view text);

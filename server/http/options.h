@@ -6,12 +6,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "server/http/message.h"
 #include "tin/base/result.h"
 
 namespace server::http {
+
+struct Route;
+
+/// Judges a request by its head, when its route is known and nothing else was done: an answer ends it. May be
+/// empty. Called on any thread.
+using Gate = std::function<std::optional<Response>(Request&, const Route&)>;
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  // an IPv4 or IPv6 address, not a name
@@ -25,6 +32,7 @@ struct ServerOptions {
   std::uint64_t memory_body_limit = 32ULL << 20;  // for routes that state no limit of their own
   std::uint64_t file_body_limit = 2ULL << 30;
   std::uint64_t min_bytes_per_second = 1024;  // of a body in either direction, after its first moments
+  std::size_t compress_from_bytes = 1024;     // of an answer, for clients that accept it; 0: never
   int requests_per_connection = 1000;
   int max_connections = 1000;
   int max_connections_per_address = 200;
@@ -34,6 +42,8 @@ struct ServerOptions {
   std::chrono::milliseconds stall_timeout{60'000};       // without any progress of a body
   std::chrono::milliseconds drain_timeout{30'000};       // for running requests when the server stops
   std::chrono::milliseconds poll_interval{200};          // between questions to a source that has nothing yet
+
+  Gate gate;
 
   std::filesystem::path upload_dir;  // made if missing; empty: the system's temporary folder
 };
@@ -50,6 +60,7 @@ struct ErrorPages {
 struct Access {
   std::string request_id;
   std::string peer;
+  std::string client;  // as Request::client
   std::string method;
   std::string route;
   std::string path;

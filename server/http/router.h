@@ -28,13 +28,23 @@ enum class BodyKind {
   kByType,  // application/json in memory, anything else as a file
 };
 
+/// What a client must be allowed to do.
+enum class Need {
+  kByMethod,  // to read for GET and HEAD, else to write
+  kNothing,
+  kRead,
+  kWrite,
+};
+
 struct Route {
   Method method = Method::kGet;
-  std::string pattern;             // "/tins/{tin}/edits"
+  std::string pattern;                  // "/tins/{tin}/edits"
   std::vector<std::string> query = {};  // the parameters that the resource knows
   BodyKind body = BodyKind::kNone;
   std::uint64_t body_limit = 0;  // bytes; 0: the server's own limit for that kind of body
+  Need need = Need::kByMethod;
   Handler handler;
+  QuickHandler quick = {};  // tried first; may be empty
 };
 
 /// What the router says about a method and a path.

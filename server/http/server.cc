@@ -75,6 +75,11 @@ class Sessions {
     alive_[number] = std::move(session);
   }
 
+  std::size_t count() const {
+    const std::lock_guard lock(mutex_);
+    return alive_.size();
+  }
+
   /// No place from now on.
   void close() {
     const std::lock_guard lock(mutex_);
@@ -102,7 +107,7 @@ class Sessions {
 
   const int most_;
   const int most_per_address_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::uint64_t, std::shared_ptr<Session>> alive_;
   std::map<std::string, int> per_address_;
@@ -148,6 +153,8 @@ class Server::Impl {
     for (int i = 0; i < options_.io_threads; ++i) threads_.emplace_back([this] { io_.run(); });
     return port;
   }
+
+  std::size_t connections() const { return sessions_.count(); }
 
   void stop() {
     const std::lock_guard lock(stopping_);
@@ -268,6 +275,10 @@ tin::base::Result<std::uint16_t> Server::start() {
 
 void Server::stop() {
   impl_->stop();
+}
+
+std::size_t Server::connections() const {
+  return impl_->connections();
 }
 
 }  // namespace server::http

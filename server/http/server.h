@@ -35,6 +35,9 @@ class Server {
   /// unknown length do not belong into one.
   void stop();
 
+  /// How many connections are open.
+  std::size_t connections() const;
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

@@ -139,14 +139,11 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     if (arrival == Arrival::kGone) co_return false;
     Exchange exchange(context_, accepted_.peer);
     std::variant<Head, Refusal> read = judge_head(arrival, raw);
-    BodyParser parser;
-    if (const Head* head = std::get_if<Head>(&read); head != nullptr && !parser.begin(raw, *head)) {
-      read = Refusal{400, "the head of the request is malformed"};
-    }
     if (const Refusal* refusal = std::get_if<Refusal>(&read)) {
       co_return co_await reply(exchange, context_.pages.status(refusal->status, refusal->detail));
     }
     Head& head = std::get<Head>(read);
+    BodyParser parser(head);
     exchange.admit(head);
     Admission& admission = exchange.admission();
     if (!admission.answer && head.has_body()) {
@@ -170,7 +167,8 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
   }
 
   awaitable<bool> handle(Exchange& exchange) {
-    std::optional<Answer> answer;
+    std::optional<Answer> answer = exchange.handle_quickly();
+    if (answer) co_return co_await deliver(exchange, *answer);
     auto job = [&] {
       if (!context_.aborted) answer = exchange.handle();
     };
@@ -286,7 +284,7 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
   }
 
   awaitable<Transfer> transfer_body(Admission& admission, BodyParser& parser, Patience& patience) {
-    parser.set_limit(admission.body_limit);
+    parser.set_limits(admission.body_limit, options_.header_bytes);
     std::unique_ptr<UploadFile> upload;
     std::vector<char> block(kBodyReadBytes);
     BodyParser::Step step;
@@ -302,7 +300,6 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
       if (step.state == BodyParser::State::kTooLarge) co_return Transfer::kTooLarge;
       if (step.state == BodyParser::State::kBroken) co_return Transfer::kBroken;
       if (step.state != BodyParser::State::kNeedMore) continue;
-      if (in_.size() > options_.header_bytes) co_return Transfer::kBroken;  // a chunk's header or the trailer
       const Clock::time_point before = Clock::now();
       const std::size_t got = co_await read_some(kBodyReadBytes, patience.left());
       patience.record(got, Clock::now() - before);

@@ -141,4 +141,12 @@ std::string log_members(std::string_view event, Fields fields) {
   return out;
 }
 
+std::string log_pair(std::string_view key, std::string_view text) {
+  std::string out;
+  append_text(out, key);
+  out += ':';
+  append_text(out, text);
+  return out;
+}
+
 }  // namespace server::obs

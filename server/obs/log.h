@@ -50,4 +50,7 @@ void log_error(std::string_view event, Fields fields = {});
 /// that JSON does not have become null.
 std::string log_members(std::string_view event, Fields fields);
 
+/// A key and a text as a member of a JSON object: `"key":"text"`.
+std::string log_pair(std::string_view key, std::string_view text);
+
 }  // namespace server::obs

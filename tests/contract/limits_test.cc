@@ -1,6 +1,9 @@
 // Every limit of the configuration: at the limit all is well, one past it is refused and changes nothing.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "tests/contract/test_server.h"
 
 namespace tests::contract {
@@ -125,6 +128,61 @@ TEST(LimitsTest, Tins) {
   EXPECT_EQ(server.state(), before);
   EXPECT_EQ(server.remove("/tins/b").status, 204);
   EXPECT_EQ(server.post_json("/tins", "{}").status, 201);
+}
+
+TEST(LimitsTest, MemoryOfAllTerrains) {
+  constexpr std::int64_t kVertex = server::app::kBytesPerVertex;
+  TestServer server([](server::Config& config) { config.limits.memory_bytes = 20 * kVertex; });
+  const auto settled = [] { std::this_thread::sleep_for(std::chrono::milliseconds(150)); };
+  EXPECT_EQ(server.post_json("/tins", R"({"id":"a","vertices":)" + vertices(12) + "}").status, 201);
+  settled();
+  const std::string before = server.state();
+  const RawAnswer refused = server.post_json("/tins", R"({"id":"b","vertices":)" + vertices(9) + "}");
+  EXPECT_EQ(refused.status, 429);
+  EXPECT_EQ(slug(refused), "too-many-requests");
+  EXPECT_NE(refused.header("retry-after"), "");
+  EXPECT_EQ(server.upload("/tins?id=c", "text/plain", ascii_grid(3, 3)).status, 429);
+  EXPECT_EQ(server.post_json("/tins/a/edits", inserts(9, 12)).status, 429);
+  EXPECT_EQ(
+      server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"a","tolerance":1}})").status,
+      429);
+  EXPECT_EQ(server.state(), before);
+  EXPECT_EQ(server.post_json("/tins", R"({"id":"b","vertices":)" + vertices(8) + "}").status, 201);
+  settled();
+  EXPECT_EQ(server.post_json("/tins/a/edits", inserts(1, 12)).status, 429);
+  EXPECT_EQ(server.remove("/tins/b").status, 204);
+  settled();
+  EXPECT_EQ(server.post_json("/tins/a/edits", inserts(8, 12)).status, 200);
+}
+
+/// Each version that a slow reader holds counts, so that readers and editors together cannot fill the memory.
+TEST(LimitsTest, MemoryOfVersionsThatReadersHold) {
+  constexpr std::int64_t kVertex = server::app::kBytesPerVertex;
+  const int vertex_count = 60'000;
+  TestServer server([&](server::Config& config) {
+    config.limits.memory_bytes = 3 * vertex_count * kVertex + 1000 * kVertex;
+  });
+  ASSERT_EQ(server.upload("/tins?id=t", "text/plain", ascii_grid(300, 200)).status, 201);
+  std::vector<std::unique_ptr<support::RawClient>> readers;
+  int status = 200, edits = 0;
+  for (; status == 200 && edits < 10; ++edits) {
+    auto& reader = readers.emplace_back(std::make_unique<support::RawClient>(server.port(), 4096));
+    reader->send("GET /tins/t/export?f=geojson HTTP/1.1\r\nHost: t\r\n\r\n");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    status = server
+                 .post_json("/tins/t/edits",
+                            R"({"ops":[{"op":"set-z","id":1,"z":)" + std::to_string(edits) + "}]}")
+                 .status;
+  }
+  EXPECT_EQ(status, 429);
+  EXPECT_GE(edits, 2);
+  EXPECT_LE(edits, 4);
+  readers.clear();
+  for (int i = 0; i < 100 && status != 200; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    status = server.post_json("/tins/t/edits", R"({"ops":[{"op":"set-z","id":1,"z":7}]})").status;
+  }
+  EXPECT_EQ(status, 200);
 }
 
 TEST(LimitsTest, PageSize) {

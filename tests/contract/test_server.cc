@@ -4,8 +4,10 @@
 #include <sstream>
 #include <thread>
 
+#include "server/api/access.h"
 #include "server/api/answer.h"
 #include "server/obs/log.h"
+#include "server/obs/metrics.h"
 #include "server/store/sqlite_store.h"
 
 namespace tests::contract {
@@ -27,9 +29,16 @@ TestServer::TestServer(const std::function<void(server::Config&)>& adjust) {
   options.worker_threads = 8;
   options.memory_body_limit = static_cast<std::uint64_t>(config_.limits.body_bytes_memory);
   options.file_body_limit = static_cast<std::uint64_t>(config_.limits.upload_bytes);
+  options.gate = server::api::make_gate(server::auth::Tokens(config_.auth.tokens), config_.auth.anonymous_read);
   options.upload_dir = config_.data_dir / "uploads";
   server_ = std::make_unique<server::http::Server>(options, server::api::make_router(*context_),
-                                                   server::api::error_pages(), server::http::Observer{});
+                                                   server::api::error_pages(),
+      server::http::Observer{[](const server::http::Access& access) {
+                               server::obs::metrics().http.record(access.method, access.route, access.status,
+                                                                  access.seconds, access.bytes_sent);
+                             },
+                             {}});
+  context_->connections = [this] { return server_->connections(); };
   const auto port = server_->start();
   if (!port) throw std::runtime_error(port.error().message);
   port_ = *port;

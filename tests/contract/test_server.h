@@ -59,6 +59,8 @@ class TestServer {
   /// "GET /tins 200" and so on: what has been answered so far.
   const std::set<std::string>& answered() const { return answered_; }
   std::uint16_t port() const { return port_; }
+  /// As the program does when it is told to stop.
+  void announce_stop() { context_->draining = true; }
 
  private:
   support::TempDir folder_;

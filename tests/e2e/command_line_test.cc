@@ -1,5 +1,7 @@
 // What the program says of itself, and how it refuses.
+#include <csignal>
 #include <fstream>
+#include <thread>
 
 #include "tests/e2e/served.h"
 
@@ -67,6 +69,48 @@ TEST_F(CommandLineTest, WhatCannotBeServedEndsWithOneAndASentence) {
   expect({"--config", config(R"({"limits":{"tin":1}})")}, "/limits/tin");
   expect({"--config", config(R"({"limits":{"tins":"many"}})")}, "/limits/tins");
   expect({"--data", config("a file")}, "folder");
+}
+
+TEST_F(CommandLineTest, OthersAreServedOnlyWithTokensOrWhenThatIsMeant) {
+  const std::vector<std::string> open{"serve", "--data", data().string(), "--listen", "0.0.0.0:0"};
+  const Finished refused = tinsmith(open);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("--insecure"), std::string::npos) << refused.err;
+  const std::string hash = "sha256:" + std::string(64, 'a');
+  const std::string tokens =
+      config(R"({"auth":{"tokens":[{"name":"a","hash":")" + hash + R"(","scopes":["read"]}]}})");
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--insecure"}, {"--config", tokens}}) {
+    std::vector<std::string> words = open;
+    words.insert(words.begin(), TINSMITH_PROGRAM);
+    words.insert(words.end(), more.begin(), more.end());
+    support::Child child(words, folder_.path() / "log");
+    EXPECT_NE(child.read_line().find("http://0.0.0.0:"), std::string::npos) << more[0];
+    child.signal(SIGTERM);
+    EXPECT_EQ(child.wait(), 0);
+  }
+}
+
+TEST_F(CommandLineTest, ATokenWorksAsTheConfigurationIsTold) {
+  const Finished made = tinsmith({"token", "--name", "a \"survey\"", "--write"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::size_t begin = made.out.find("tinsmith_"), entry = made.out.find("  {");
+  ASSERT_NE(begin, std::string::npos);
+  ASSERT_NE(entry, std::string::npos);
+  const std::string token = made.out.substr(begin, made.out.find('\n', begin) - begin);
+  start({"--config", config(R"({"auth":{"tokens":[)" + made.out.substr(entry) + "]}}")});
+  EXPECT_EQ(served_->http().get("/tins").status, 401);
+  EXPECT_EQ(served_->http().get("/tins", "Authorization: Bearer " + token + "\r\n").status, 200);
+  EXPECT_EQ(tinsmith({"token"}).status, 2);
+}
+
+TEST_F(CommandLineTest, ReadinessEndsBeforeTheServerDoes) {
+  start({"--config", config(R"({"http":{"drain_notice_seconds":4}})")});
+  EXPECT_EQ(served_->http().get("/readyz").status, 200);
+  std::jthread stopping([&] { EXPECT_EQ(served_->stop(), 0); });
+  while (served_->http().get("/readyz").status == 200) std::this_thread::yield();
+  EXPECT_EQ(served_->http().get("/readyz").status, 503);
+  EXPECT_EQ(served_->http().get("/tins").status, 200) << "what arrives meanwhile is served";
 }
 
 TEST_F(CommandLineTest, APortThatIsTakenIsSaid) {

@@ -37,6 +37,9 @@ class ElevationQuery {
   /// O(1) for coherent positions; by natural neighbours also their number, about six.
   std::optional<Elevation> at(exact::Point p);
 
+  /// Begins the next walk at `t`, an alive triangle: where Triangulation::locate_many() found the position.
+  void start_from(mesh::TriangleSlot t) { last_ = t; }
+
  private:
   std::optional<Elevation> on_line(exact::Point p) const;
   bool is_void(exact::Point p, std::span<const mesh::VertexSlot> corners) const;

@@ -1,0 +1,61 @@
+#include "server/app/memory.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+
+namespace server::app {
+namespace {
+
+constexpr std::int64_t kAskEvery_ms = 100;
+
+std::int64_t steady_ms() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+}
+
+}  // namespace
+
+std::uint64_t estimated_bytes(const tin::terrain::Terrain& terrain) {
+  const tin::terrain::SourceGrid* grid = terrain.source_grid();
+  return terrain.vertex_count() * kBytesPerVertex +
+         (grid == nullptr ? 0 : grid->valid.size() * sizeof(std::uint64_t));
+}
+
+std::uint64_t default_memory_limit() {
+  std::uint64_t bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                        static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  std::uint64_t of_group = 0;
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> of_group) bytes = std::min(bytes, of_group);
+  return bytes / 4 * 3;
+}
+
+tin::base::Result<MemoryBudget::Lease> MemoryBudget::lease(std::uint64_t bytes) {
+  leased_ += bytes;
+  Lease lease(*this, bytes);
+  if (auto room = check(0); !room) return room.error();
+  return lease;
+}
+
+tin::base::Result<void> MemoryBudget::check(std::uint64_t bytes) const {
+  if (used() + bytes <= limit_) return {};
+  return tin::base::error(tin::base::Code::kTooMany,
+                          "The terrains on this server take all the memory that it may have at the moment.");
+}
+
+std::uint64_t MemoryBudget::used() const {
+  return held() + leased_;
+}
+
+std::uint64_t MemoryBudget::held() const {
+  const std::lock_guard lock(mutex_);
+  if (asked_ms_ < 0 || steady_ms() - asked_ms_ >= kAskEvery_ms) {
+    held_then_ = held_();
+    asked_ms_ = steady_ms();
+  }
+  return held_then_;
+}
+
+}  // namespace server::app

@@ -1,0 +1,66 @@
+// How much memory terrains take, and how much they may: an estimate that is quick to make and errs upwards.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <utility>
+
+#include "tin/base/result.h"
+#include "tin/terrain/terrain.h"
+
+namespace server::app {
+
+/// Of one vertex with its triangles, elevation, id and location structures; measured, rounded up.
+inline constexpr std::uint64_t kBytesPerVertex = 160;
+
+/// What a terrain takes, its source's mask included.
+std::uint64_t estimated_bytes(const tin::terrain::Terrain& terrain);
+
+/// Three quarters of what the machine, or the group of processes this one is in, may have.
+std::uint64_t default_memory_limit();
+
+/// What is held, what work under way has reserved, and the limit of both. Thread-safe.
+class MemoryBudget {
+ public:
+  /// `held` tells what terrains take now; it is asked ten times a second at most.
+  MemoryBudget(std::uint64_t limit, std::function<std::uint64_t()> held)
+      : limit_(limit), held_(std::move(held)) {}
+
+  /// A part of the memory for work under way, until the end of the scope.
+  class Lease {
+   public:
+    Lease(MemoryBudget& budget, std::uint64_t bytes) : budget_(&budget), bytes_(bytes) {}
+    Lease(Lease&& other) noexcept : budget_(std::exchange(other.budget_, nullptr)), bytes_(other.bytes_) {}
+    Lease& operator=(Lease&&) = delete;
+    ~Lease() {
+      if (budget_ != nullptr) budget_->leased_ -= bytes_;
+    }
+
+   private:
+    MemoryBudget* budget_;
+    std::uint64_t bytes_;
+  };
+
+  /// Errors: kTooMany.
+  tin::base::Result<Lease> lease(std::uint64_t bytes);
+  /// Whether there is room for so much more. Errors: kTooMany.
+  tin::base::Result<void> check(std::uint64_t bytes) const;
+
+  /// What terrains and work under way take.
+  std::uint64_t used() const;
+  std::uint64_t limit() const { return limit_; }
+
+ private:
+  std::uint64_t held() const;
+
+  const std::uint64_t limit_;
+  const std::function<std::uint64_t()> held_;
+  std::atomic<std::uint64_t> leased_{0};
+  mutable std::mutex mutex_;
+  mutable std::int64_t asked_ms_ = -1;
+  mutable std::uint64_t held_then_ = 0;
+};
+
+}  // namespace server::app
