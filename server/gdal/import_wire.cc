@@ -42,6 +42,7 @@ class Writer {
     put(size);
     bytes_.append(text, 0, size);
   }
+  void put(const std::vector<std::uint8_t>& bytes) { put(std::string(bytes.begin(), bytes.end())); }
   std::string take() { return std::move(bytes_); }
 
  private:
@@ -75,6 +76,11 @@ class Reader {
       bytes_.remove_prefix(size);
     }
   }
+  void get(std::vector<std::uint8_t>& bytes) {
+    std::string text;
+    get(text);
+    bytes.assign(text.begin(), text.end());
+  }
   bool good() const { return good_; }
   bool done() const { return good_ && bytes_.empty(); }
 
@@ -105,11 +111,11 @@ bool send_array(char kind, const std::vector<T>& items, const Sink& sink) {
 /// added there does not compile until it travels, too.
 template <class Options, class Visit>
 void visit_options(Options& options, Visit visit) {
-  auto& [file_name, content_type, format, crs, resolution_x, resolution_y, layer, z_field, max_samples,
-         max_pixels, heights_only] = options;
+  auto& [file_name, content_type, format, crs, resolution_x, resolution_y, layer, z_field, classes, max_samples,
+         max_pixels, max_unpacked_bytes, heights_only] = options;
   visit(file_name), visit(content_type), visit(format), visit(crs);
   visit(resolution_x), visit(resolution_y), visit(layer), visit(z_field);
-  visit(max_samples), visit(max_pixels), visit(heights_only);
+  visit(classes), visit(max_samples), visit(max_pixels), visit(max_unpacked_bytes), visit(heights_only);
 }
 
 template <class Frame, class Visit>

@@ -101,12 +101,16 @@ TEST(ImportWireTest, ErrorsAndOptionsTravel) {
   ImportOptions options;
   options.file_name = "a.csv";
   options.resolution_y = 0.25;
+  options.classes = {2, 200};
+  options.max_unpacked_bytes = 9;
   options.max_pixels = 7;
   options.heights_only = true;
   const auto there = decode_options(encode_options(options));
   ASSERT_TRUE(there);
   EXPECT_EQ(there->file_name, "a.csv");
   EXPECT_EQ(there->resolution_y, 0.25);
+  EXPECT_EQ(there->classes, options.classes);
+  EXPECT_EQ(there->max_unpacked_bytes, 9U);
   EXPECT_EQ(there->max_pixels, 7U);
   EXPECT_TRUE(there->heights_only);
   EXPECT_FALSE(decode_options(encode_options(options).substr(1)));
