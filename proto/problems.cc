@@ -48,6 +48,8 @@ Row row_of(Code code) {
       return {409, "cancelled", "The work was stopped on request"};
     case Code::kStorage:
       return {503, "storage", "The store is not available"};
+    case Code::kNoSpace:
+      return {507, "insufficient-storage", "There is no room left"};
     case Code::kInternal:
       return {500, "internal", "The server met an error of its own"};
   }
@@ -101,7 +103,7 @@ Row row_of_status(int status) {
     case 505:
       return {505, "http-version", "The HTTP version is not supported"};
     case 507:
-      return {507, "insufficient-storage", "There is no room left"};
+      return row_of(Code::kNoSpace);
     default:
       return status >= 400 && status < 500 ? Row{status, "malformed", "The request cannot be answered"}
                                            : Row{status, "internal", "The server met an error of its own"};
@@ -131,6 +133,9 @@ Problem to_problem(const tin::base::Error& error) {
   }
   if (error.code == Code::kStorage) {
     return make_problem(row, "Nothing was changed. The server's log says why; try again later.", {});
+  }
+  if (error.code == Code::kNoSpace) {
+    return make_problem(row, "Nothing was changed: the disk has no room. Try again when there is some.", {});
   }
   return make_problem(row, error.message, error.where);
 }

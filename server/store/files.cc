@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <new>
 #include <random>
 #include <system_error>
 #include <utility>
@@ -25,7 +26,8 @@ tin::base::Error system_error(const std::string& what) {
   const int number = errno;
   const std::string detail = what + ": " + std::generic_category().message(number);
   const bool full = number == ENOSPC || number == EDQUOT || number == EFBIG;
-  return tin::base::error(Code::kStorage, full ? std::string(kDiskFull) + ": " + detail : detail);
+  return full ? tin::base::error(Code::kNoSpace, std::string(kDiskFull) + ": " + detail)
+              : tin::base::error(Code::kStorage, detail);
 }
 
 std::string random_name(std::string_view suffix) {
@@ -134,8 +136,12 @@ Result<std::string> Files::get(const FileReference& file) const {
   return bytes;
 }
 
-void Files::remove(const std::string& name) {
-  if (!name.empty()) disk_->remove(folder_ / name);
+void Files::remove(const std::string& name) noexcept {
+  if (name.empty()) return;
+  try {
+    disk_->remove(folder_ / name);
+  } catch (const std::bad_alloc&) {  // the next start removes what no row names
+  }
 }
 
 void Files::remove_all_but(const std::vector<std::string>& kept) {

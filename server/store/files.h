@@ -13,8 +13,8 @@
 
 namespace server::store {
 
-/// The steps of writing files, so that a test can let each of them fail. Thread-safe. Errors: kStorage, with
-/// kDiskFull in front when there is no room.
+/// The steps of writing files, so that a test can let each of them fail. Thread-safe. Errors: kStorage;
+/// kNoSpace when there is no room.
 class Disk {
  public:
   virtual ~Disk() = default;
@@ -44,11 +44,11 @@ class Files {
   static tin::base::Result<Files> open(const std::filesystem::path& folder, std::shared_ptr<Disk> disk);
 
   /// Writes `parts`, one after the other, to a new file; `suffix` says what it is. It is durable, name and
-  /// all, when this returns. Errors: kStorage; then no file is left.
+  /// all, when this returns. Errors: kStorage, kNoSpace; then no file is left.
   tin::base::Result<FileReference> put(const std::vector<std::string_view>& parts, std::string_view suffix);
   /// Errors: kStorage when the file is missing, or is not what was put.
   tin::base::Result<std::string> get(const FileReference& file) const;
-  void remove(const std::string& name);
+  void remove(const std::string& name) noexcept;
   /// Removes all files but these: what a crash left between a file and its row. `kept` ascends.
   void remove_all_but(const std::vector<std::string>& kept);
 

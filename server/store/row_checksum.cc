@@ -28,6 +28,13 @@ std::uint32_t checksum(const JournalRow& row) {
   return add_text(row.info.note, crc);
 }
 
+std::uint32_t checksum(const Answer& answer) {
+  std::uint32_t crc = add_text(answer.key, 0);
+  crc = add_text(answer.request, crc);
+  crc = add_text(answer.bytes, crc);
+  return add_number(static_cast<std::uint64_t>(answer.time_ms), crc);
+}
+
 std::uint32_t checksum(std::uint64_t revision, std::int64_t chunk, std::string_view bytes) {
   return add_text(bytes, add_number(static_cast<std::uint64_t>(chunk), add_number(revision, 0)));
 }

@@ -11,6 +11,9 @@ namespace server::store {
 /// Over all fields of the row.
 std::uint32_t checksum(const JournalRow& row);
 
+/// Over all fields of the answer.
+std::uint32_t checksum(const Answer& answer);
+
 /// Over one chunk of a checkpoint and its place.
 std::uint32_t checksum(std::uint64_t revision, std::int64_t chunk, std::string_view bytes);
 

@@ -23,9 +23,12 @@ Database::~Database() {
   sqlite3_close(handle_);
 }
 
-Result<void> Database::open(const std::filesystem::path& file) {
-  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
-  if (!succeeded(sqlite3_open_v2(file.c_str(), &handle_, flags, nullptr))) return error();
+Result<void> Database::open(const std::filesystem::path& file, const std::string& vfs, Access access) {
+  const int how =
+      access == Access::kWrite ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+  const int flags = how | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+  if (!succeeded(sqlite3_open_v2(file.c_str(), &handle_, flags, vfs.empty() ? nullptr : vfs.c_str())))
+    return error();
   if (!succeeded(sqlite3_busy_timeout(handle_, kBusyTimeoutMs))) return error();
   return {};
 }
@@ -54,13 +57,31 @@ tin::base::Error Database::error() const {
   const int code = sqlite3_extended_errcode(handle_);
   const std::string detail = std::string(sqlite3_errmsg(handle_)) + " (SQLite " + std::to_string(code) + ")";
   if (primary(code) == SQLITE_FULL)
-    return tin::base::error(Code::kStorage, std::string(kDiskFull) + ": " + detail);
+    return tin::base::error(Code::kNoSpace, std::string(kDiskFull) + ": " + detail);
   return tin::base::error(Code::kStorage, "the store failed: " + detail);
 }
 
 bool Database::succeeded(int code) {
   if (primary(code) == SQLITE_IOERR) disk_failed_ = true;
   return code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE;
+}
+
+bool Database::in_transaction() const {
+  return sqlite3_get_autocommit(handle_) == 0;
+}
+
+void Database::keep_log() {
+  const auto note = [](void* self, sqlite3*, const char*, int pages) {
+    static_cast<Database*>(self)->log_pages_ = pages;
+    return SQLITE_OK;
+  };
+  sqlite3_wal_hook(handle_, note, this);  // in place of SQLite's own, which would checkpoint
+}
+
+void Database::checkpoint_log() {
+  int left = 0, done = 0;
+  succeeded(sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_PASSIVE, &left, &done));
+  log_pages_ = left - done;
 }
 
 Query::~Query() {

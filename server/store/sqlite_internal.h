@@ -25,8 +25,11 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// Errors: kStorage. To be called once.
-  tin::base::Result<void> open(const std::filesystem::path& file);
+  enum class Access { kWrite, kRead };
+  /// `vfs` names SQLite's interface to the system; empty: the usual one. For reading, the file must be there,
+  /// and is left as it is. Errors: kStorage. To be called once.
+  tin::base::Result<void> open(const std::filesystem::path& file, const std::string& vfs = {},
+                               Access access = Access::kWrite);
 
   /// The query of `sql`, a literal, prepared once and used again. At most one Query per literal at a time.
   Query query(const char* sql);
@@ -41,11 +44,21 @@ class Database {
   bool disk_failed() const { return disk_failed_; }
   /// Notes the result of a call; true unless it is an error.
   bool succeeded(int code);
+  /// Whether a transaction is open: SQLite takes back the whole of one by itself when the disk is full.
+  bool in_transaction() const;
+
+  /// From now on the write-ahead log is brought into the database by checkpoint_log() only.
+  void keep_log();
+  /// Pages in the log after the last commit.
+  int log_pages() const { return log_pages_; }
+  /// Brings the log into the database as far as readers allow.
+  void checkpoint_log();
 
  private:
   sqlite3* handle_ = nullptr;
   std::unordered_map<const char*, sqlite3_stmt*> statements_;
   bool disk_failed_ = false;
+  int log_pages_ = 0;
 };
 
 /// One use of a prepared statement: bind in order, then run() it or step through its rows. Errors while
@@ -79,11 +92,12 @@ class Query {
   bool failed_ = false;
 };
 
-/// A write transaction: rolled back unless committed.
+/// A transaction: rolled back unless committed.
 class Transaction {
  public:
-  explicit Transaction(Database& database)
-      : database_(database), begun_(database.execute("BEGIN IMMEDIATE")) {}
+  enum Kind { kWrite, kRead };
+  explicit Transaction(Database& database, Kind kind = kWrite)
+      : database_(database), begun_(database.execute(kind == kWrite ? "BEGIN IMMEDIATE" : "BEGIN")) {}
   ~Transaction();
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;

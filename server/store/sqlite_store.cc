@@ -1,14 +1,15 @@
 #include "server/store/sqlite_store.h"
 
-#include <array>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "server/store/committer.h"
 #include "server/store/data_lock.h"
 #include "server/store/files.h"
-#include "server/store/row_checksum.h"
 #include "server/store/sqlite_internal.h"
+#include "server/store/sqlite_rows.h"
+#include "server/store/sqlite_schema.h"
 
 namespace server::store {
 namespace {
@@ -16,367 +17,294 @@ namespace {
 using tin::base::Code;
 using tin::base::Result;
 
-// Rows stay far below SQLite's limit of 10^9 bytes, and memory for one is small.
-constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
-
-// What leads from each version of the schema to the next: a new store takes all steps, an older one the rest.
-constexpr std::array kMigrations = {
-    R"sql(
-CREATE TABLE tin(
-  key INTEGER PRIMARY KEY AUTOINCREMENT,
-  id TEXT NOT NULL UNIQUE,
-  title TEXT NOT NULL,
-  created_ms INTEGER NOT NULL,
-  checkpoint_revision INTEGER NOT NULL,
-  checkpoint_bytes INTEGER NOT NULL);
-CREATE TABLE checkpoint(
-  tin INTEGER NOT NULL REFERENCES tin(key) ON DELETE CASCADE,
-  revision INTEGER NOT NULL,
-  chunk INTEGER NOT NULL,
-  bytes BLOB NOT NULL,
-  crc INTEGER NOT NULL,
-  PRIMARY KEY(tin, revision, chunk));
-CREATE TABLE journal(
-  tin INTEGER NOT NULL REFERENCES tin(key) ON DELETE CASCADE,
-  revision INTEGER NOT NULL,
-  record BLOB NOT NULL,
-  time_ms INTEGER NOT NULL,
-  author TEXT NOT NULL,
-  note TEXT NOT NULL,
-  crc INTEGER NOT NULL,
-  PRIMARY KEY(tin, revision));
-)sql",
-    // The source of a TIN: a file.
-    R"sql(
-ALTER TABLE tin ADD COLUMN source_file TEXT NOT NULL DEFAULT '';
-ALTER TABLE tin ADD COLUMN source_bytes INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE tin ADD COLUMN source_crc INTEGER NOT NULL DEFAULT 0;
-)sql"};
-constexpr std::int64_t kSchemaVersion = kMigrations.size();
-
-tin::base::Error no_such_tin(std::string_view id) {
-  return tin::base::error(Code::kNotFound, "no TIN \"" + std::string(id) + "\"");
-}
-
-tin::base::Error damaged(std::string_view tin, const std::string& what) {
-  return tin::base::error(Code::kStorage, "the store is damaged: TIN \"" + std::string(tin) + "\", " + what);
-}
-
-// A row of the table tin, and the number of its last revision.
-struct Head {
-  std::int64_t key = 0;
-  TinRecord tin;
-  std::uint64_t checkpoint_revision = 0;
-  std::uint64_t checkpoint_bytes = 0;
-  std::uint64_t last_revision = 0;
-  FileReference source;
-};
-
+// Writes go through the committing thread and its connection; reads have one of their own, and see what is
+// committed. So no read waits for a sync.
 class SqliteStore : public Store {
  public:
+  SqliteStore() = default;
   explicit SqliteStore(DataLock lock) : lock_(std::move(lock)) {}
 
   Result<void> open(const std::filesystem::path& folder, const SqliteOptions& options);
+  Result<void> open_for_reading(const std::filesystem::path& folder);
 
   Result<void> create_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint,
                           std::string_view source) override;
   Result<void> update_title(std::string_view tin, std::string_view title) override;
   Result<void> remove_tin(std::string_view tin) override;
-  Result<void> append(std::string_view tin, std::uint64_t revision, std::string_view record,
-                      const RevisionInfo& info) override;
+  Result<void> append(std::string_view tin, std::span<const Entry> entries) override;
   Result<void> put_checkpoint(std::string_view tin, std::uint64_t revision,
                               std::string_view checkpoint) override;
+  Result<void> trim_journal(std::string_view tin, const Retention& kept) override;
+  Result<void> trim_answers(std::int64_t before_ms, std::uint64_t most) override;
+
   Result<std::vector<TinRecord>> list() override;
   Result<Loaded> load(std::string_view tin) override;
   Result<std::string> load_source(std::string_view tin) override;
+  Result<std::vector<JournalRow>> read_journal(std::string_view tin, const JournalRange& range) override;
+  Result<JournalExtent> journal_extent(std::string_view tin) override;
+  Result<std::optional<Answer>> find_answer(std::string_view tin, std::string_view key) override;
+
+  Result<void> put_job(const JobRow& job) override;
+  Result<void> remove_job(std::string_view id) override;
+  Result<std::vector<JobRow>> list_jobs() override;
+
+  Result<void> writable() const override;
+  Counts counts() const override;
 
  private:
-  Result<void> prepare_schema();
-  Result<void> open_files(const std::filesystem::path& folder, const SqliteOptions& options);
+  Result<void> open_database(const std::filesystem::path& file, const SqliteOptions& options);
   Result<void> limit_size(std::int64_t bytes);
-  /// Runs `work` in a transaction, which is committed when it succeeds.
-  template <class Work>
-  Result<void> write(Work work);
-  Result<Head> head(std::string_view tin);
-  Result<void> insert_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint,
-                          const FileReference& source);
-  Result<void> write_chunks(std::int64_t key, std::uint64_t revision, std::string_view checkpoint);
-  Result<std::string> read_chunks(const Head& head);
-  Result<std::vector<JournalRow>> read_journal(const Head& head);
+  Result<NewCheckpoint> place(std::string_view checkpoint);
+  /// Removes files that a failed write leaves without a row. Where a failing disk left it open whether the
+  /// row is there, they stay, and the next start decides.
+  void drop_unnamed(const Result<void>& written, std::span<const FileReference> files);
+  Result<void> commit(const Committer::Work& work);
+  template <class Step>
+  Result<void> change(std::string_view tin, Step step);
 
-  DataLock lock_;  // outlives the connection
+  std::optional<DataLock> lock_;  // outlives the connections
+  std::size_t row_bytes_ = 0;
   std::optional<Files> files_;
-  std::mutex mutex_;
-  Database database_;
+  Database writing_;
+  std::mutex reading_mutex_;
+  Database reading_;
+  std::optional<Committer> committer_;  // last: its thread uses the rest; none: only reading
 };
 
 Result<void> SqliteStore::open(const std::filesystem::path& folder, const SqliteOptions& options) {
   const std::filesystem::path file = folder / "tinsmith.sqlite3";
-  if (auto opened = database_.open(file); !opened.ok()) return opened;
-  auto prepared = prepare_schema();
-  if (!prepared.ok())
-    return tin::base::error(prepared.error().code, file.string() + ": " + prepared.error().message);
-  // Only what is ours gets switched to WAL. The WAL of a large checkpoint is cut back afterwards.
-  auto set = database_.execute(
-      "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA journal_size_limit = 67108864;");
-  if (!set.ok()) return set;
-  if (auto limited = limit_size(options.max_file_bytes); !limited.ok()) return limited;
-  return open_files(folder, options);
-}
-
-Result<void> SqliteStore::open_files(const std::filesystem::path& folder, const SqliteOptions& options) {
+  if (auto opened = open_database(file, options); !opened.ok())
+    return tin::base::error(opened.error().code, file.string() + ": " + opened.error().message);
+  row_bytes_ = options.checkpoint_row_bytes;
   auto files = Files::open(folder / "files", options.disk ? options.disk : std::make_shared<Disk>());
   if (!files.ok()) return files.error();
   files_ = *std::move(files);
-  std::vector<std::string> named;
-  Query query = database_.query("SELECT source_file FROM tin WHERE source_file <> '' ORDER BY source_file");
-  for (;;) {
-    const auto row = query.next();
-    if (!row.ok()) return row.error();
-    if (!*row) break;
-    named.push_back(query.bytes(0));
-  }
-  files_->remove_all_but(named);
+  const auto named = read_file_names(reading_);
+  if (!named.ok()) return named.error();
+  files_->remove_all_but(*named);
+  committer_.emplace(writing_);
   return {};
 }
 
-Result<void> SqliteStore::prepare_schema() {
-  const auto version = database_.number("PRAGMA user_version");
-  if (!version.ok()) return version.error();
-  if (*version > kSchemaVersion) {
-    return tin::base::error(Code::kUnsupported, "written by a newer tinsmith: its schema version is " +
-                                                    std::to_string(*version) + ", this program knows up to " +
-                                                    std::to_string(kSchemaVersion));
-  }
-  const auto tables = database_.number("SELECT count(*) FROM sqlite_schema");
-  if (!tables.ok()) return tables.error();
-  if (*version == 0 && *tables > 0) return tin::base::error(Code::kUnsupported, "no database of tinsmith");
-  if (auto wal = database_.execute("PRAGMA journal_mode = WAL"); !wal.ok() || *version == kSchemaVersion)
-    return wal;
-  return write([&]() -> Result<void> {
-    for (auto step = static_cast<std::size_t>(*version); step < kMigrations.size(); ++step) {
-      if (auto made = database_.execute(kMigrations[step]); !made.ok()) return made;
-    }
-    return database_.execute(("PRAGMA user_version = " + std::to_string(kSchemaVersion)).c_str());
-  });
+Result<void> SqliteStore::open_database(const std::filesystem::path& file, const SqliteOptions& options) {
+  if (auto opened = writing_.open(file, options.vfs); !opened.ok()) return opened;
+  if (auto prepared = prepare_schema(writing_); !prepared.ok()) return prepared;
+  auto set = writing_.execute("PRAGMA foreign_keys = ON; PRAGMA journal_size_limit = 67108864;");
+  if (!set.ok()) return set;
+  writing_.keep_log();
+  if (auto limited = limit_size(options.max_file_bytes); !limited.ok()) return limited;
+  if (auto opened = reading_.open(file, options.vfs); !opened.ok()) return opened;
+  return reading_.execute("PRAGMA query_only = ON");
+}
+
+Result<void> SqliteStore::open_for_reading(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "tinsmith.sqlite3";
+  auto opened = reading_.open(file, {}, Database::Access::kRead);
+  if (opened.ok()) opened = check_schema(reading_);
+  if (!opened.ok())
+    return tin::base::error(opened.error().code, file.string() + ": " + opened.error().message);
+  auto files = Files::open(folder / "files", std::make_shared<Disk>());
+  if (!files.ok()) return files.error();
+  files_ = *std::move(files);
+  return {};
+}
+
+Result<void> SqliteStore::writable() const {
+  return committer_ ? committer_->writable() : tin::base::error(Code::kStorage, "opened for reading");
+}
+
+Store::Counts SqliteStore::counts() const {
+  return committer_ ? Counts{committer_->commits(), committer_->writes()} : Counts{};
 }
 
 Result<void> SqliteStore::limit_size(std::int64_t bytes) {
   if (bytes <= 0) return {};
-  const auto page = database_.number("PRAGMA page_size");
+  const auto page = writing_.number("PRAGMA page_size");
   if (!page.ok()) return page.error();
   const std::int64_t pages = (bytes + *page - 1) / *page;
-  return database_.execute(("PRAGMA max_page_count = " + std::to_string(pages)).c_str());
+  return writing_.execute(("PRAGMA max_page_count = " + std::to_string(pages)).c_str());
 }
 
-template <class Work>
-Result<void> SqliteStore::write(Work work) {
-  // After a failed write or sync nobody knows what the disk holds, and a later sync may succeed without the
-  // pages that were lost: only reading the file anew tells.
-  if (database_.disk_failed()) {
-    return tin::base::error(Code::kStorage, "the disk failed earlier: nothing is written until a restart");
-  }
-  Transaction transaction(database_);
-  if (!transaction.begun().ok()) return transaction.begun();
-  if (Result<void> done = work(); !done.ok()) return done;
-  return transaction.commit();
+/// Brings a large checkpoint to disk; a small one goes into a row.
+Result<NewCheckpoint> SqliteStore::place(std::string_view checkpoint) {
+  if (checkpoint.size() <= row_bytes_) return NewCheckpoint{{}, checkpoint};
+  auto file = files_->put({checkpoint}, "checkpoint");
+  if (!file.ok()) return file.error();
+  return NewCheckpoint{*std::move(file), {}};
 }
 
-Result<Head> SqliteStore::head(std::string_view tin) {
-  Query query = database_.query(
-      "SELECT key, id, title, created_ms, checkpoint_revision, checkpoint_bytes, max(checkpoint_revision,"
-      " coalesce((SELECT max(revision) FROM journal WHERE journal.tin = tin.key), 0)),"
-      " source_file, source_bytes, source_crc FROM tin WHERE id = ?");
-  const auto row = query.bind_text(tin).next();
-  if (!row.ok()) return row.error();
-  if (!*row) return no_such_tin(tin);
-  return Head{
-      query.integer(0), {query.bytes(1), query.bytes(2), query.integer(3)},
-      query.natural(4), query.natural(5),
-      query.natural(6), {query.bytes(7), query.natural(8), static_cast<std::uint32_t>(query.integer(9))}};
+void SqliteStore::drop_unnamed(const Result<void>& written, std::span<const FileReference> files) {
+  if (written.ok() || written.error().code == Code::kStorage) return;
+  for (const FileReference& file : files) files_->remove(file.name);
 }
 
-Result<void> SqliteStore::write_chunks(std::int64_t key, std::uint64_t revision,
-                                       std::string_view checkpoint) {
-  for (std::int64_t chunk = 0; !checkpoint.empty(); ++chunk) {
-    const std::string_view bytes = checkpoint.substr(0, kChunkBytes);
-    Query insert =
-        database_.query("INSERT INTO checkpoint(tin, revision, chunk, bytes, crc) VALUES(?, ?, ?, ?, ?)");
-    insert.bind(key).bind(revision).bind(chunk).bind_blob(bytes).bind(
-        std::int64_t{checksum(revision, chunk, bytes)});
-    if (auto done = insert.run(); !done.ok()) return done;
-    checkpoint.remove_prefix(bytes.size());
-  }
-  return {};
+Result<void> SqliteStore::commit(const Committer::Work& work) {
+  if (!committer_) return tin::base::error(Code::kStorage, "the store was opened for reading");
+  return committer_->commit(work);
+}
+
+/// One write to a TIN: step(database, head). Errors: kNotFound, and those of the step.
+template <class Step>
+Result<void> SqliteStore::change(std::string_view tin, Step step) {
+  return commit([&](Database& database) -> Result<void> {
+    auto head = read_head(database, tin);
+    if (!head.ok()) return head.error();
+    return step(database, *head);
+  });
 }
 
 Result<void> SqliteStore::create_tin(const TinRecord& tin, std::uint64_t revision,
                                      std::string_view checkpoint, std::string_view source) {
-  FileReference file;
+  std::array<FileReference, 2> files;
   if (!source.empty()) {
     auto put = files_->put({source}, "source");
     if (!put.ok()) return put.error();
-    file = *std::move(put);
+    files[0] = *std::move(put);
   }
-  auto made = [&] {
-    const std::lock_guard guard(mutex_);
-    return write([&] { return insert_tin(tin, revision, checkpoint, file); });
-  }();
-  // Where a disk that fails left it open whether the row is there, the file must stay.
-  if (!made.ok() && made.error().code == Code::kConflict) files_->remove(file.name);
+  const auto placed = place(checkpoint);
+  if (!placed.ok()) {
+    files_->remove(files[0].name);
+    return placed.error();
+  }
+  files[1] = placed->file;
+  auto made =
+      commit([&](Database& database) { return insert_tin(database, tin, revision, *placed, files[0]); });
+  drop_unnamed(made, files);
   return made;
 }
 
-Result<void> SqliteStore::insert_tin(const TinRecord& tin, std::uint64_t revision,
-                                     std::string_view checkpoint, const FileReference& source) {
-  auto present = head(tin.id);
-  if (present.ok()) return tin::base::error(Code::kConflict, "there is a TIN \"" + tin.id + "\" already");
-  if (present.error().code != Code::kNotFound) return present.error();
-  Query insert = database_.query(
-      "INSERT INTO tin(id, title, created_ms, checkpoint_revision, checkpoint_bytes, source_file, "
-      "source_bytes,"
-      " source_crc) VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.bind_text(tin.id).bind_text(tin.title).bind(tin.created_ms).bind(revision);
-  insert.bind(std::uint64_t{checkpoint.size()}).bind_text(source.name).bind(source.bytes);
-  if (auto done = insert.bind(std::int64_t{source.crc}).run(); !done.ok()) return done;
-  const auto key = database_.number("SELECT last_insert_rowid()");
-  if (!key.ok()) return key.error();
-  return write_chunks(*key, revision, checkpoint);
-}
-
 Result<void> SqliteStore::update_title(std::string_view tin, std::string_view title) {
-  const std::lock_guard guard(mutex_);
-  return write([&]() -> Result<void> {
-    const auto present = head(tin);
-    if (!present.ok()) return present.error();
-    return database_.query("UPDATE tin SET title = ? WHERE key = ?")
-        .bind_text(title)
-        .bind(present->key)
-        .run();
+  return change(tin, [&](Database& database, const Head& head) {
+    return database.query("UPDATE tin SET title = ? WHERE key = ?").bind_text(title).bind(head.key).run();
   });
 }
 
 Result<void> SqliteStore::remove_tin(std::string_view tin) {
-  const std::lock_guard guard(mutex_);
-  std::string source;
-  auto removed = write([&]() -> Result<void> {
-    const auto present = head(tin);
-    if (!present.ok()) return present.error();
-    source = present->source.name;
-    return database_.query("DELETE FROM tin WHERE key = ?").bind(present->key).run();
+  Head removed;
+  auto done = change(tin, [&](Database& database, const Head& head) {
+    removed = head;
+    return database.query("DELETE FROM tin WHERE key = ?").bind(head.key).run();
   });
-  if (removed.ok()) files_->remove(source);
-  return removed;
+  if (done.ok()) {
+    files_->remove(removed.source.name);
+    files_->remove(removed.checkpoint.name);
+  }
+  return done;
 }
 
-Result<void> SqliteStore::append(std::string_view tin, std::uint64_t revision, std::string_view record,
-                                 const RevisionInfo& info) {
-  const std::uint32_t crc = checksum(JournalRow{revision, std::string(record), info});
-  const std::lock_guard guard(mutex_);
-  return write([&]() -> Result<void> {
-    const auto present = head(tin);
-    if (!present.ok()) return present.error();
-    if (revision != present->last_revision + 1) {
-      return tin::base::error(Code::kConflict, "revision " + std::to_string(revision) +
-                                                   " does not follow revision " +
-                                                   std::to_string(present->last_revision));
+Result<void> SqliteStore::append(std::string_view tin, std::span<const Entry> entries) {
+  // Few entries bring a checkpoint, and a small one.
+  std::string replaced;
+  auto done = change(tin, [&](Database& database, Head& head) -> Result<void> {
+    for (const Entry& entry : entries) {
+      if (entry.checkpoint) {
+        replaced = head.checkpoint.name;
+        auto put = replace_checkpoint(database, head, head.last_revision, {{}, *entry.checkpoint});
+        if (!put.ok()) return put;
+      }
+      if (auto added = insert_entry(database, head, entry); !added.ok()) return added;
     }
-    Query insert = database_.query(
-        "INSERT INTO journal(tin, revision, record, time_ms, author, note, crc) VALUES(?, ?, ?, ?, ?, ?, ?)");
-    insert.bind(present->key).bind(revision).bind_blob(record).bind(info.time_ms);
-    return insert.bind_text(info.author).bind_text(info.note).bind(std::int64_t{crc}).run();
+    return {};
   });
+  if (done.ok()) files_->remove(replaced);
+  return done;
 }
 
 Result<void> SqliteStore::put_checkpoint(std::string_view tin, std::uint64_t revision,
                                          std::string_view checkpoint) {
-  const std::lock_guard guard(mutex_);
-  return write([&]() -> Result<void> {
-    const auto present = head(tin);
-    if (!present.ok()) return present.error();
-    if (revision < present->checkpoint_revision || revision > present->last_revision) {
-      return tin::base::error(Code::kConflict, "no checkpoint of revision " + std::to_string(revision) +
-                                                   ": it must be one from " +
-                                                   std::to_string(present->checkpoint_revision) + " to " +
-                                                   std::to_string(present->last_revision));
-    }
-    Query remove = database_.query("DELETE FROM checkpoint WHERE tin = ?");
-    if (auto done = remove.bind(present->key).run(); !done.ok()) return done;
-    Query update =
-        database_.query("UPDATE tin SET checkpoint_revision = ?, checkpoint_bytes = ? WHERE key = ?");
-    update.bind(revision).bind(std::uint64_t{checkpoint.size()}).bind(present->key);
-    if (auto done = update.run(); !done.ok()) return done;
-    return write_chunks(present->key, revision, checkpoint);
+  const auto placed = place(checkpoint);
+  if (!placed.ok()) return placed.error();
+  std::string replaced;
+  auto done = change(tin, [&](Database& database, const Head& head) {
+    replaced = head.checkpoint.name;
+    return replace_checkpoint(database, head, revision, *placed);
   });
+  if (done.ok()) files_->remove(replaced);
+  drop_unnamed(done, {&placed->file, 1});
+  return done;
+}
+
+Result<void> SqliteStore::trim_journal(std::string_view tin, const Retention& kept) {
+  return change(tin, [&](Database& database, const Head& head) { return trim_rows(database, head, kept); });
+}
+
+Result<void> SqliteStore::trim_answers(std::int64_t before_ms, std::uint64_t most) {
+  return commit([&](Database& database) { return trim_answer_rows(database, before_ms, most); });
 }
 
 Result<std::vector<TinRecord>> SqliteStore::list() {
-  const std::lock_guard guard(mutex_);
-  Query query = database_.query("SELECT id, title, created_ms FROM tin ORDER BY id");
-  std::vector<TinRecord> tins;
-  for (;;) {
-    const auto row = query.next();
-    if (!row.ok()) return row.error();
-    if (!*row) return tins;
-    tins.push_back({query.bytes(0), query.bytes(1), query.integer(2)});
-  }
-}
-
-Result<std::string> SqliteStore::read_chunks(const Head& head) {
-  Query query = database_.query(
-      "SELECT chunk, bytes, crc FROM checkpoint WHERE tin = ? AND revision = ? ORDER BY chunk");
-  query.bind(head.key).bind(head.checkpoint_revision);
-  std::string checkpoint;
-  for (std::int64_t expected = 0;; ++expected) {
-    const auto row = query.next();
-    if (!row.ok()) return row.error();
-    if (!*row) break;
-    const std::string bytes = query.bytes(1);
-    if (query.integer(0) != expected ||
-        query.integer(2) != checksum(head.checkpoint_revision, expected, bytes)) {
-      return damaged(head.tin.id, "chunk " + std::to_string(expected) + " of its checkpoint");
-    }
-    checkpoint += bytes;
-  }
-  if (checkpoint.size() != head.checkpoint_bytes) return damaged(head.tin.id, "the length of its checkpoint");
-  return checkpoint;
-}
-
-Result<std::vector<JournalRow>> SqliteStore::read_journal(const Head& head) {
-  Query query = database_.query(
-      "SELECT revision, record, time_ms, author, note, crc FROM journal WHERE tin = ? AND revision > ?"
-      " ORDER BY revision");
-  query.bind(head.key).bind(head.checkpoint_revision);
-  std::vector<JournalRow> rows;
-  for (std::uint64_t expected = head.checkpoint_revision + 1;; ++expected) {
-    const auto row = query.next();
-    if (!row.ok()) return row.error();
-    if (!*row) return rows;
-    rows.push_back({query.natural(0), query.bytes(1), {query.integer(2), query.bytes(3), query.bytes(4)}});
-    if (rows.back().revision != expected || query.integer(5) != checksum(rows.back())) {
-      return damaged(head.tin.id, "revision " + std::to_string(expected) + " of its journal");
-    }
-  }
+  const std::lock_guard guard(reading_mutex_);
+  return read_tins(reading_);
 }
 
 Result<Loaded> SqliteStore::load(std::string_view tin) {
-  const std::lock_guard guard(mutex_);
-  auto present = head(tin);
-  if (!present.ok()) return std::move(present).error();
-  auto checkpoint = read_chunks(*present);
-  if (!checkpoint.ok()) return std::move(checkpoint).error();
-  auto journal = read_journal(*present);
-  if (!journal.ok()) return std::move(journal).error();
-  return Loaded{present->tin, present->checkpoint_revision, *std::move(checkpoint), *std::move(journal)};
+  for (int attempt = 0;; ++attempt) {
+    std::unique_lock lock(reading_mutex_);
+    Transaction snapshot(reading_, Transaction::kRead);  // head and rows of one moment
+    if (!snapshot.begun().ok()) return snapshot.begun().error();
+    const auto head = read_head(reading_, tin);
+    if (!head.ok()) return head.error();
+    auto journal = read_rows(reading_, *head, {.first = head->checkpoint_revision + 1});
+    if (!journal.ok()) return journal.error();
+    const std::uint64_t first = journal->empty() ? head->last_revision + 1 : journal->front().revision;
+    if (first != head->checkpoint_revision + 1)
+      return damaged(tin, "revision " + std::to_string(head->checkpoint_revision + 1) + " of its journal");
+    auto checkpoint = head->checkpoint.name.empty() ? read_checkpoint_rows(reading_, *head)
+                                                    : Result<std::string>(std::string());
+    if (!checkpoint.ok()) return checkpoint.error();
+    if (!head->checkpoint.name.empty()) {
+      lock.unlock();
+      checkpoint = files_->get(head->checkpoint);
+      // Another may have taken its place, and removed it, after the row was read.
+      if (!checkpoint.ok() && attempt < 3) continue;
+      if (!checkpoint.ok()) return checkpoint.error();
+    }
+    return Loaded{head->tin, head->checkpoint_revision, *std::move(checkpoint), *std::move(journal)};
+  }
 }
 
 Result<std::string> SqliteStore::load_source(std::string_view tin) {
-  std::unique_lock lock(mutex_);
-  const auto present = head(tin);
-  if (!present.ok()) return present.error();
+  std::unique_lock lock(reading_mutex_);
+  const auto head = read_head(reading_, tin);
+  if (!head.ok()) return head.error();
   lock.unlock();
-  if (present->source.name.empty()) return std::string();
-  return files_->get(present->source);
+  if (head->source.name.empty()) return std::string();
+  return files_->get(head->source);
+}
+
+Result<std::vector<JournalRow>> SqliteStore::read_journal(std::string_view tin, const JournalRange& range) {
+  const std::lock_guard guard(reading_mutex_);
+  const auto head = read_head(reading_, tin);
+  if (!head.ok()) return head.error();
+  return read_rows(reading_, *head, range);
+}
+
+Result<JournalExtent> SqliteStore::journal_extent(std::string_view tin) {
+  const std::lock_guard guard(reading_mutex_);
+  const auto head = read_head(reading_, tin);
+  if (!head.ok()) return head.error();
+  return read_extent(reading_, *head);
+}
+
+Result<std::optional<Answer>> SqliteStore::find_answer(std::string_view tin, std::string_view key) {
+  const std::lock_guard guard(reading_mutex_);
+  const auto head = read_head(reading_, tin);
+  if (!head.ok()) return head.error();
+  return read_answer(reading_, *head, key);
+}
+
+Result<void> SqliteStore::put_job(const JobRow& job) {
+  return commit([&](Database& database) { return upsert_job(database, job); });
+}
+
+Result<void> SqliteStore::remove_job(std::string_view id) {
+  return commit(
+      [&](Database& database) { return database.query("DELETE FROM job WHERE id = ?").bind_text(id).run(); });
+}
+
+Result<std::vector<JobRow>> SqliteStore::list_jobs() {
+  const std::lock_guard guard(reading_mutex_);
+  return read_jobs(reading_);
 }
 
 }  // namespace
@@ -390,6 +318,14 @@ Result<std::unique_ptr<Store>> open_sqlite_store(const std::filesystem::path& fo
   if (!lock.ok()) return std::move(lock).error();
   auto store = std::make_unique<SqliteStore>(*std::move(lock));
   if (auto opened = store->open(folder, options); !opened.ok()) return std::move(opened).error();
+  return std::unique_ptr<Store>(std::move(store));
+}
+
+Result<std::unique_ptr<Store>> open_sqlite_store_for_reading(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "tinsmith.sqlite3"))
+    return tin::base::error(Code::kNotFound, "there is no store in " + folder.string());
+  auto store = std::make_unique<SqliteStore>();
+  if (auto opened = store->open_for_reading(folder); !opened.ok()) return std::move(opened).error();
   return std::unique_ptr<Store>(std::move(store));
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "server/store/files.h"
 #include "server/store/store.h"
@@ -16,6 +17,10 @@ struct SqliteOptions {
   /// The most that the database file may grow to, rounded up to pages; past it writes fail with kDiskFull. 0:
   /// no bound but the disk's.
   std::int64_t max_file_bytes = 0;
+  /// Checkpoints up to this size stand in the database, larger ones are files.
+  std::size_t checkpoint_row_bytes = std::size_t{1} << 20;
+  /// SQLite's interface to the system, by name; empty: the usual one. Tests put faults here.
+  std::string vfs = {};
   /// What writes the files beside the database; null: the system. Tests put faults here.
   std::shared_ptr<Disk> disk = nullptr;
 };
@@ -27,5 +32,10 @@ struct SqliteOptions {
 ///         version wrote it, or it is no store of ours; kStorage.
 tin::base::Result<std::unique_ptr<Store>> open_sqlite_store(const std::filesystem::path& folder,
                                                             const SqliteOptions& options = {});
+
+/// The store of a folder for reading, beside a server that may be writing it: what it holds at each call. It
+/// takes no lock, repairs nothing, and refuses writes (kStorage). Errors: kNotFound when there is no store;
+/// kUnsupported when another version wrote it; kStorage.
+tin::base::Result<std::unique_ptr<Store>> open_sqlite_store_for_reading(const std::filesystem::path& folder);
 
 }  // namespace server::store

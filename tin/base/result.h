@@ -27,6 +27,7 @@ enum class Code {
   kTooMany,            // queues or connections full: try later
   kCancelled,          // stopped on request
   kStorage,            // the store could not write
+  kNoSpace,            // the store has no room left
   kInternal,           // our bug or the environment's
 };
 

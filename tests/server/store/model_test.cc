@@ -57,7 +57,7 @@ class ModelTest : public testing::AnyStore {
                          bytes(),
                          {static_cast<std::int64_t>(below(1000)), bytes(), bytes()}};
     const bool expected = found != model_.end() && row.revision == last + 1;
-    ASSERT_EQ(store_->append(tin, row.revision, row.record, row.info).ok(), expected);
+    ASSERT_EQ(testing::append(*store_, tin, row.revision, row.record, row.info).ok(), expected);
     if (expected) found->second.journal[row.revision] = row;
   }
 

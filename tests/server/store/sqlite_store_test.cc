@@ -15,6 +15,7 @@
 namespace server::store {
 namespace {
 
+using testing::append;
 using testing::fails;
 using testing::succeeds;
 using tin::base::Code;
@@ -24,12 +25,14 @@ class SqliteStoreTest : public ::testing::Test {
   void SetUp() override {
     reopen();
     ASSERT_TRUE(succeeds(store_->create_tin({"alps", "The Alps", 1}, 1, std::string(5'000'000, 'c'))));
-    ASSERT_TRUE(succeeds(store_->append("alps", 2, "two", {2, "ada", "note"})));
-    ASSERT_TRUE(succeeds(store_->append("alps", 3, "three", {3, "bob", "note"})));
+    ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "two", {2, "ada", "note"})));
+    ASSERT_TRUE(succeeds(append(*store_, "alps", 3, "three", {3, "bob", "note"})));
   }
 
-  void reopen(const SqliteOptions& options = {}) {
+  // Checkpoints stand in rows, of which the large one takes two.
+  void reopen(SqliteOptions options = {}) {
     store_.reset();
+    options.checkpoint_row_bytes = SIZE_MAX;
     auto opened = open_sqlite_store(folder_.path(), options);
     ASSERT_TRUE(succeeds(opened));
     store_ = *std::move(opened);
@@ -107,6 +110,30 @@ TEST_F(SqliteStoreTest, DamagedAndMissingSourcesAreReported) {
   }
 }
 
+TEST_F(SqliteStoreTest, LargeCheckpointsAreFilesAndOldOnesGo) {
+  store_.reset();
+  store_ = *open_sqlite_store(folder_.path(), {.checkpoint_row_bytes = 100});
+  const std::filesystem::path files = folder_.path() / "files";
+  const auto count = [&] { return std::distance(std::filesystem::directory_iterator(files), {}); };
+  const std::string second(1000, '2'), third(1000, '3');
+  ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, second)));
+  EXPECT_EQ(count(), 1);
+  ASSERT_TRUE(succeeds(append(*store_, "b", 2, "two")));
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("b", 2, third)));
+  EXPECT_EQ(count(), 1);
+  EXPECT_EQ(store_->load("b")->checkpoint, third);
+  EXPECT_TRUE(fails(store_->put_checkpoint("b", 9, second), Code::kConflict));
+  EXPECT_EQ(count(), 1);
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("b", 2, "small")));
+  EXPECT_EQ(count(), 0);
+  EXPECT_EQ(store_->load("b")->checkpoint, "small");
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("b", 2, third)));
+  for (const auto& entry : std::filesystem::directory_iterator(files)) {
+    std::ofstream(entry.path(), std::ios::trunc) << std::string(1000, '4');
+  }
+  EXPECT_TRUE(fails(store_->load("b"), Code::kStorage));
+}
+
 TEST_F(SqliteStoreTest, FilesThatNoRowNamesAreRemovedAtTheStart) {
   ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b", "the source of b")));
   const std::filesystem::path files = folder_.path() / "files";
@@ -121,8 +148,10 @@ TEST_F(SqliteStoreTest, FilesThatNoRowNamesAreRemovedAtTheStart) {
 
 TEST_F(SqliteStoreTest, AnOlderStoreIsBroughtUpToDate) {
   tamper(
-      "ALTER TABLE tin DROP COLUMN source_file; ALTER TABLE tin DROP COLUMN source_bytes;"
-      "ALTER TABLE tin DROP COLUMN source_crc; PRAGMA user_version = 1");
+      "DROP TABLE answer; DROP TABLE job; ALTER TABLE tin DROP COLUMN checkpoint_file;"
+      "ALTER TABLE tin DROP COLUMN checkpoint_crc; ALTER TABLE tin DROP COLUMN source_file;"
+      "ALTER TABLE tin DROP COLUMN source_bytes; ALTER TABLE tin DROP COLUMN source_crc;"
+      "PRAGMA user_version = 1");
   reopen();
   EXPECT_EQ(store_->load("alps")->journal.size(), 2U);
   EXPECT_EQ(store_->load_source("alps").value(), "");
@@ -172,15 +201,15 @@ TEST_F(SqliteStoreTest, AFullDiskIsNamedAndRecoversWithRoom) {
   std::uint64_t revision = 4;
   auto appended = tin::base::Result<void>();
   for (; revision < 1000; ++revision) {
-    appended = store_->append("alps", revision, std::string(20'000, 'r'), {});
+    appended = append(*store_, "alps", revision, std::string(20'000, 'r'), {});
     if (!appended.ok()) break;
   }
-  ASSERT_TRUE(fails(appended, Code::kStorage));
+  ASSERT_TRUE(fails(appended, Code::kNoSpace));
   EXPECT_TRUE(appended.error().message.starts_with(kDiskFull)) << appended.error().message;
   EXPECT_EQ(store_->load("alps")->journal.size(),
             revision - 2);  // reading goes on, and nothing was half done
   ASSERT_TRUE(succeeds(store_->remove_tin("ballast")));
-  EXPECT_TRUE(succeeds(store_->append("alps", revision, std::string(20'000, 'r'), {})));
+  EXPECT_TRUE(succeeds(append(*store_, "alps", revision, std::string(20'000, 'r'), {})));
 }
 
 // In a child, whose files may not grow further from some point on: write() fails as a dying disk's would.
@@ -188,13 +217,13 @@ int append_on_a_failing_disk(const std::filesystem::path& folder) {
   auto opened = open_sqlite_store(folder);
   if (!opened.ok()) return 2;
   const std::unique_ptr<Store> store = *std::move(opened);
-  if (!store->append("alps", 4, "four", {}).ok()) return 3;
+  if (!append(*store, "alps", 4, "four", {}).ok()) return 3;
   ::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{100'000, 100'000};
   if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) return 4;
   std::uint64_t revision = 5;
-  while (store->append("alps", revision, std::string(10'000, 'x'), {}).ok()) ++revision;
-  const auto again = store->append("alps", revision, "small", {});
+  while (append(*store, "alps", revision, std::string(10'000, 'x'), {}).ok()) ++revision;
+  const auto again = append(*store, "alps", revision, "small", {});
   if (again.ok() || again.error().message.find("restart") == std::string::npos) return 5;
   const auto loaded = store->load("alps");
   return loaded.ok() && loaded->journal.size() == revision - 2 ? 0 : 6;

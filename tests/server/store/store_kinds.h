@@ -42,6 +42,13 @@ inline std::vector<StoreKind> store_kinds() {
   return {{"Sqlite", [](const std::filesystem::path& folder) { return open_sqlite_store(folder); }}};
 }
 
+/// Adds one revision.
+inline tin::base::Result<void> append(Store& store, std::string_view tin, std::uint64_t revision,
+                                      std::string_view record, const RevisionInfo& info = {}) {
+  const Entry entry{JournalRow{revision, std::string(record), info}, std::nullopt};
+  return store.append(tin, {&entry, 1});
+}
+
 /// A fixture with a store in a folder.
 class AnyStore : public ::testing::TestWithParam<StoreKind> {
  protected:

@@ -10,6 +10,7 @@
 namespace server::store {
 namespace {
 
+using testing::append;
 using testing::fails;
 using testing::succeeds;
 using tin::base::Code;
@@ -28,7 +29,7 @@ TEST_P(StoreTest, IsEmptyAtFirst) {
 
 TEST_P(StoreTest, WhatIsPutInComesOut) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "checkpoint")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "record", kInfo)));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "record", kInfo)));
   for (int round = 0; round < 2; ++round) {
     const auto loaded = store_->load("alps");
     ASSERT_TRUE(succeeds(loaded));
@@ -45,8 +46,8 @@ TEST_P(StoreTest, AnyBytesAndAnyTextAreKept) {
   const TinRecord tin{bytes, bytes, -5};
   const RevisionInfo info{-1, bytes, bytes};
   ASSERT_TRUE(succeeds(store_->create_tin(tin, 0, bytes)));
-  ASSERT_TRUE(succeeds(store_->append(bytes, 1, bytes, info)));
-  ASSERT_TRUE(succeeds(store_->append(bytes, 2, "", {})));
+  ASSERT_TRUE(succeeds(append(*store_, bytes, 1, bytes, info)));
+  ASSERT_TRUE(succeeds(append(*store_, bytes, 2, "", {})));
   const auto loaded = store_->load(bytes);
   ASSERT_TRUE(succeeds(loaded));
   EXPECT_EQ(loaded->tin, tin);
@@ -74,7 +75,7 @@ TEST_P(StoreTest, AnIdIsTakenOnce) {
 TEST_P(StoreTest, UnknownTinsAreNotFound) {
   EXPECT_TRUE(fails(store_->load("alps"), Code::kNotFound));
   EXPECT_TRUE(fails(store_->load_source("alps"), Code::kNotFound));
-  EXPECT_TRUE(fails(store_->append("alps", 1, "", {}), Code::kNotFound));
+  EXPECT_TRUE(fails(append(*store_, "alps", 1, "", {}), Code::kNotFound));
   EXPECT_TRUE(fails(store_->put_checkpoint("alps", 1, ""), Code::kNotFound));
   EXPECT_TRUE(fails(store_->update_title("alps", ""), Code::kNotFound));
   EXPECT_TRUE(fails(store_->remove_tin("alps"), Code::kNotFound));
@@ -83,13 +84,13 @@ TEST_P(StoreTest, UnknownTinsAreNotFound) {
 TEST_P(StoreTest, OnlyTheSuccessorIsAppended) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 5, "")));
   for (const std::uint64_t wrong : {0, 4, 5, 7}) {
-    EXPECT_TRUE(fails(store_->append("alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
+    EXPECT_TRUE(fails(append(*store_, "alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
   }
-  ASSERT_TRUE(succeeds(store_->append("alps", 6, "six", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 6, "six", {})));
   for (const std::uint64_t wrong : {5, 6, 8}) {
-    EXPECT_TRUE(fails(store_->append("alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
+    EXPECT_TRUE(fails(append(*store_, "alps", wrong, "wrong", {}), Code::kConflict)) << wrong;
   }
-  ASSERT_TRUE(succeeds(store_->append("alps", 7, "seven", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 7, "seven", {})));
   const auto loaded = store_->load("alps");
   ASSERT_TRUE(succeeds(loaded));
   EXPECT_EQ(loaded->journal, (std::vector<JournalRow>{{6, "six", {}}, {7, "seven", {}}}));
@@ -98,7 +99,7 @@ TEST_P(StoreTest, OnlyTheSuccessorIsAppended) {
 TEST_P(StoreTest, ACheckpointShortensTheReplay) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
   for (std::uint64_t revision = 2; revision <= 4; ++revision) {
-    ASSERT_TRUE(succeeds(store_->append("alps", revision, std::to_string(revision), {})));
+    ASSERT_TRUE(succeeds(append(*store_, "alps", revision, std::to_string(revision), {})));
   }
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 3, "three")));
   for (int round = 0; round < 2; ++round) {
@@ -110,12 +111,12 @@ TEST_P(StoreTest, ACheckpointShortensTheReplay) {
     reopen();
   }
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 4, "four")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 5, "5", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 5, "5", {})));
 }
 
 TEST_P(StoreTest, CheckpointsMoveForwardWithinTheJournal) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "", {})));
   EXPECT_TRUE(fails(store_->put_checkpoint("alps", 3, "three"), Code::kConflict));
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 2, "two")));
   EXPECT_TRUE(fails(store_->put_checkpoint("alps", 1, "one"), Code::kConflict));
@@ -142,7 +143,7 @@ TEST_P(StoreTest, TheSourceStaysAsItWasBesideAllCheckpoints) {
   for (std::size_t i = 0; i < source.size(); ++i) source[i] = static_cast<char>(i * 2654435761U >> 13);
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one", source)));
   ASSERT_TRUE(succeeds(store_->create_tin({"bare", "", 0}, 1, "one")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "two", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "two", {})));
   ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 2, "two")));
   for (int round = 0; round < 2; ++round) {
     const auto loaded = store_->load_source("alps");
@@ -169,7 +170,7 @@ TEST_P(StoreTest, TitlesChange) {
 TEST_P(StoreTest, ARemovedTinIsGoneAndItsIdFree) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "old")));
   ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b")));
-  ASSERT_TRUE(succeeds(store_->append("alps", 2, "old", {})));
+  ASSERT_TRUE(succeeds(append(*store_, "alps", 2, "old", {})));
   ASSERT_TRUE(succeeds(store_->remove_tin("alps")));
   EXPECT_TRUE(fails(store_->load("alps"), Code::kNotFound));
   EXPECT_EQ(store_->list()->size(), 1u);
@@ -190,7 +191,7 @@ TEST_P(StoreTest, ManyThreadsAppendToTheirTins) {
   for (int t = 0; t < kThreads; ++t) {
     threads.emplace_back([&, id = std::to_string(t)] {
       for (std::uint64_t revision = 2; revision < 2 + kAppends; ++revision) {
-        EXPECT_TRUE(succeeds(store_->append(id, revision, id, {})));
+        EXPECT_TRUE(succeeds(append(*store_, id, revision, id, {})));
         EXPECT_TRUE(succeeds(store_->list()));
       }
     });
@@ -206,13 +207,154 @@ TEST_P(StoreTest, OfManyThreadsWithOneRevisionOneWins) {
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&] {
       for (std::uint64_t revision = 2; revision < 22; ++revision) {
-        if (store_->append("alps", revision, "", {}).ok()) ++won;
+        if (append(*store_, "alps", revision, "", {}).ok()) ++won;
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(won, 20);
   EXPECT_EQ(store_->load("alps")->journal.size(), 20u);
+}
+
+TEST_P(StoreTest, EntriesComeTogetherOrNotAtAll) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  const Answer answer{"key", "request", "answer", 5};
+  const std::vector<Entry> two{{JournalRow{2, "two", kInfo}, answer},
+                               {JournalRow{3, "three", {}}, std::nullopt}};
+  ASSERT_TRUE(succeeds(store_->append("alps", two)));
+  const std::vector<Entry> gap{{JournalRow{4, "four", {}}, std::nullopt},
+                               {JournalRow{6, "six", {}}, std::nullopt}};
+  EXPECT_TRUE(fails(store_->append("alps", gap), Code::kConflict));
+  const std::vector<Entry> again{{JournalRow{4, "four", {}}, Answer{"key", "other", "", 6}}};
+  EXPECT_TRUE(fails(store_->append("alps", again), Code::kConflict));
+  for (int round = 0; round < 2; ++round) {
+    EXPECT_EQ(store_->load("alps")->journal.size(), 2u);
+    EXPECT_EQ(store_->find_answer("alps", "key").value(), answer);
+    EXPECT_EQ(store_->find_answer("alps", "other").value(), std::nullopt);
+    reopen();
+  }
+  EXPECT_TRUE(fails(store_->find_answer("none", "key"), Code::kNotFound));
+}
+
+TEST_P(StoreTest, AnEntryMayBringTheCheckpointThatItStandsOn) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "open")));
+  const std::vector<Entry> first{{JournalRow{2, "two", {}}, std::nullopt, "fitted"}};
+  ASSERT_TRUE(succeeds(store_->append("alps", first)));
+  reopen();
+  const auto loaded = store_->load("alps");
+  ASSERT_TRUE(succeeds(loaded));
+  EXPECT_EQ(loaded->checkpoint, "fitted");
+  EXPECT_EQ(loaded->checkpoint_revision, 1u);
+  EXPECT_EQ(loaded->journal.size(), 1u);
+}
+
+TEST_P(StoreTest, TheJournalIsReadInPartsFromEitherEnd) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  for (std::uint64_t revision = 2; revision <= 9; ++revision)
+    ASSERT_TRUE(succeeds(append(*store_, "alps", revision, std::string(100, 'r'))));
+  const auto revisions = [&](const JournalRange& range) {
+    std::vector<std::uint64_t> out;
+    const auto rows = store_->read_journal("alps", range);
+    EXPECT_TRUE(succeeds(rows));
+    for (const JournalRow& row : *rows) out.push_back(row.revision);
+    return out;
+  };
+  using Numbers = std::vector<std::uint64_t>;
+  EXPECT_EQ(revisions({.first = 4, .last = 6}), (Numbers{4, 5, 6}));
+  EXPECT_EQ(revisions({.first = 8}), (Numbers{8, 9}));
+  EXPECT_EQ(revisions({.newest_first = true, .most_rows = 2}), (Numbers{9, 8}));
+  EXPECT_EQ(revisions({.last = 5, .newest_first = true, .most_bytes = 150}), (Numbers{5, 4}));
+  EXPECT_EQ(revisions({.most_bytes = 1}), (Numbers{2})) << "one in any case";
+  EXPECT_EQ(revisions({.first = 10}), (Numbers{}));
+  EXPECT_TRUE(fails(store_->read_journal("none", {}), Code::kNotFound));
+}
+
+TEST_P(StoreTest, TrimmingForgetsWhatTheCheckpointHolds) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  for (std::uint64_t revision = 2; revision <= 9; ++revision)
+    ASSERT_TRUE(succeeds(append(*store_, "alps", revision, std::string(100, 'r'))));
+  const auto first = [&] { return store_->journal_extent("alps")->first; };
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 3})));
+  EXPECT_EQ(first(), 2u) << "the checkpoint is older";
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 8, "eight")));
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 6})));
+  EXPECT_EQ(first(), 4u);
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.bytes = 399})));
+  EXPECT_EQ(first(), 7u);
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 0})));
+  EXPECT_EQ(first(), 9u) << "what follows the checkpoint stays";
+  reopen();
+  EXPECT_EQ(store_->load("alps")->journal.size(), 1u);
+  ASSERT_TRUE(succeeds(store_->put_checkpoint("alps", 9, "nine")));
+  ASSERT_TRUE(succeeds(store_->trim_journal("alps", {.revisions = 0})));
+  EXPECT_EQ(first(), 0u);
+  EXPECT_EQ(store_->journal_extent("alps")->last, 9u);
+  EXPECT_TRUE(succeeds(append(*store_, "alps", 10, "ten")));
+}
+
+TEST_P(StoreTest, OldAndSurplusAnswersAreForgotten) {
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  for (int i = 0; i < 10; ++i) {
+    const Entry entry{std::nullopt, Answer{std::to_string(i), "", "", 100 + i}};
+    ASSERT_TRUE(succeeds(store_->append("alps", {&entry, 1})));
+  }
+  const auto kept = [&] {
+    std::string keys;
+    for (int i = 0; i < 10; ++i) {
+      if (*store_->find_answer("alps", std::to_string(i))) keys += std::to_string(i);
+    }
+    return keys;
+  };
+  ASSERT_TRUE(succeeds(store_->trim_answers(103, 100)));
+  EXPECT_EQ(kept(), "3456789");
+  ASSERT_TRUE(succeeds(store_->trim_answers(0, 2)));
+  EXPECT_EQ(kept(), "89");
+  ASSERT_TRUE(succeeds(store_->remove_tin("alps")));
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one")));
+  EXPECT_EQ(kept(), "") << "a TIN of the same id later is another one";
+}
+
+TEST_P(StoreTest, JobsAreKeptInTheirOrder) {
+  JobRow first{"z", "simplify", "alps", 0, 1, 0, 0, "waiting", "", "", ""};
+  const JobRow second{"a", "import", "file", 2, 2, 3, 4, "done", "", "", "{}"};
+  ASSERT_TRUE(succeeds(store_->put_job(first)));
+  ASSERT_TRUE(succeeds(store_->put_job(second)));
+  first.state = 3;
+  first.started_ms = 5;
+  first.finished_ms = 6;
+  first.message = "failed";
+  first.error = "too-large";
+  first.where = "/inputs";
+  ASSERT_TRUE(succeeds(store_->put_job(first)));
+  reopen();
+  EXPECT_EQ(store_->list_jobs().value(), (std::vector<JobRow>{first, second}));
+  ASSERT_TRUE(succeeds(store_->remove_job("z")));
+  EXPECT_EQ(store_->list_jobs().value(), (std::vector<JobRow>{second}));
+}
+
+TEST_P(StoreTest, WritesThatComeAtOneTimeShareCommits) {
+  constexpr int kThreads = 16;
+  constexpr std::uint64_t kAppends = 30;
+  for (int t = 0; t < kThreads; ++t)
+    ASSERT_TRUE(succeeds(store_->create_tin({std::to_string(t), "", 0}, 1, "")));
+  const auto before = store_->counts();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&, id = std::to_string(t)] {
+      for (std::uint64_t revision = 2; revision < 2 + kAppends; ++revision) {
+        EXPECT_TRUE(succeeds(append(*store_, id, revision, id)));
+        if (revision % 10 == 0) {  // one that fails takes no other with it
+          EXPECT_TRUE(fails(append(*store_, id, revision, id), Code::kConflict));
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  const auto after = store_->counts();
+  EXPECT_EQ(after.writes - before.writes, kThreads * kAppends);
+  EXPECT_LT(after.commits - before.commits, kThreads * kAppends / 2);
+  reopen();
+  for (int t = 0; t < kThreads; ++t) EXPECT_EQ(store_->load(std::to_string(t))->journal.size(), kAppends);
 }
 
 }  // namespace
