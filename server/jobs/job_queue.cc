@@ -62,12 +62,33 @@ struct JobQueue::Job {
   }
 };
 
-JobQueue::JobQueue(const JobLimits& limits) : limits_(limits) {
+JobQueue::JobQueue(const JobLimits& limits, JobMemory* memory, const std::vector<JobStatus>& earlier)
+    : limits_(limits), memory_(memory) {
+  recall(earlier);
   for (std::size_t i = 0; i < limits_.workers; ++i) workers_.emplace_back([this] { run_worker(); });
 }
 
 JobQueue::~JobQueue() {
   stop();
+}
+
+void JobQueue::recall(const std::vector<JobStatus>& earlier) {
+  {
+    const std::lock_guard guard(mutex_);
+    for (const JobStatus& status : earlier) {
+      const auto job = std::make_shared<Job>();
+      job->status = status;
+      job->number = submitted_++;
+      by_id_.emplace(status.id, job);
+      if (is_finished(status.state)) {
+        finished_.push_back(job);
+      } else {
+        finish(*job, JobState::kDismissed,
+               "dismissed because the server was restarted before it had finished");
+      }
+    }
+  }
+  bring_memory_up();
 }
 
 Result<JobId> JobQueue::submit(std::string kind, std::string description, Work work) {
@@ -79,11 +100,24 @@ Result<JobId> JobQueue::submit(std::string kind, std::string description, Work w
   job->status.message = "waiting for a worker";
   job->work = std::move(work);
   const JobId id = job->status.id;
+  const auto check_room = [this]() -> Result<void> {
+    if (stopped_ || draining_) return tin::base::error(Code::kTooMany, "the server is shutting down");
+    if (queued_.size() < limits_.max_queued) return {};
+    return tin::base::error(Code::kTooMany, std::to_string(queued_.size()) + " jobs are waiting already");
+  };
   {
     const std::lock_guard guard(mutex_);
-    if (stopped_ || draining_) return tin::base::error(Code::kTooMany, "the server is shutting down");
-    if (queued_.size() >= limits_.max_queued) {
-      return tin::base::error(Code::kTooMany, std::to_string(queued_.size()) + " jobs are waiting already");
+    if (auto room = check_room(); !room.ok()) return room.error();
+  }
+  if (memory_ != nullptr) {
+    if (auto kept = memory_->remember(job->status); !kept.ok()) return kept.error();
+  }
+  {
+    std::unique_lock lock(mutex_);
+    if (auto room = check_room(); !room.ok()) {  // others were quicker
+      lock.unlock();
+      if (memory_ != nullptr) memory_->forget(id);
+      return room.error();
     }
     job->number = submitted_++;
     by_id_.emplace(id, job);
@@ -120,7 +154,7 @@ std::vector<JobStatus> JobQueue::list() const {
 
 Result<void> JobQueue::dismiss(std::string_view id) {
   Work dropped;  // destroyed without the lock: it may own much
-  const std::lock_guard guard(mutex_);
+  std::unique_lock lock(mutex_);
   const JobPtr job = find(id);
   if (!job) return tin::base::error(Code::kNotFound, "no job \"" + std::string(id) + "\"");
   if (job->status.state == JobState::kRunning) {
@@ -134,7 +168,10 @@ Result<void> JobQueue::dismiss(std::string_view id) {
     job->status.message = "dismissed after it had finished";
     job->status.result.clear();
     job->status.error.reset();
+    if (memory_ != nullptr) to_remember_.push_back(job->status);
   }
+  lock.unlock();
+  bring_memory_up();
   return {};
 }
 
@@ -158,6 +195,7 @@ void JobQueue::stop() {
       finish(*job, JobState::kDismissed, "dismissed because the server stopped");
     }
   }
+  bring_memory_up();
   queue_changed_.notify_all();
   const std::lock_guard joining(stop_mutex_);
   for (std::thread& worker : std::exchange(workers_, {})) worker.join();
@@ -183,17 +221,30 @@ JobQueue::JobPtr JobQueue::next_job() {
 void JobQueue::run(Job& job) {
   Result<std::string> result = guarded(job.work, job.progress);
   job.work = nullptr;  // what it holds (a snapshot, perhaps) goes before anyone hears of the end
-  const std::lock_guard guard(mutex_);
-  std::erase_if(running_, [&](const JobPtr& running) { return running.get() == &job; });
-  if (result.ok()) {
-    job.status.result = *std::move(result);
-    finish(job, JobState::kSuccessful, "done");
-  } else if (result.error().code == Code::kCancelled && job.progress.cancelled()) {
-    finish(job, JobState::kDismissed, "dismissed while it ran");
-  } else {
-    job.status.error = std::move(result).error();
-    finish(job, JobState::kFailed, job.status.error->message);
+  const bool cancelled = !result.ok() && result.error().code == Code::kCancelled && job.progress.cancelled();
+  if (memory_ != nullptr && result.ok()) {
+    // On disk before anyone hears of it. If that fails, this process knows it still.
+    JobStatus done = status(job.status.id).value_or(job.status);
+    done.state = JobState::kSuccessful;
+    done.finished_ms = now_ms();
+    done.message = "done";
+    done.result = *result;
+    static_cast<void>(memory_->remember(done));
   }
+  {
+    const std::lock_guard guard(mutex_);
+    std::erase_if(running_, [&](const JobPtr& running) { return running.get() == &job; });
+    if (result.ok()) {
+      job.status.result = *std::move(result);
+      finish(job, JobState::kSuccessful, "done");
+    } else if (cancelled) {
+      finish(job, JobState::kDismissed, "dismissed while it ran");
+    } else {
+      job.status.error = std::move(result).error();
+      finish(job, JobState::kFailed, job.status.error->message);
+    }
+  }
+  bring_memory_up();
 }
 
 void JobQueue::finish(Job& job, JobState state, std::string message) {
@@ -201,11 +252,25 @@ void JobQueue::finish(Job& job, JobState state, std::string message) {
   job.status.finished_ms = now_ms();
   job.status.message = std::move(message);
   finished_.push_back(find(job.status.id));
+  if (memory_ != nullptr) to_remember_.push_back(job.status);
   while (finished_.size() > limits_.max_kept) {
+    if (memory_ != nullptr) to_forget_.push_back(finished_.front()->status.id);
     by_id_.erase(finished_.front()->status.id);
     finished_.pop_front();
   }
   finished_changed_.notify_all();
+}
+
+/// Writes down what happened meanwhile. The memory may be slow, so nobody waits for it with the lock.
+void JobQueue::bring_memory_up() {
+  if (memory_ == nullptr) return;
+  const std::lock_guard in_order(memory_mutex_);
+  std::unique_lock lock(mutex_);
+  const auto jobs = std::exchange(to_remember_, {});
+  const auto ids = std::exchange(to_forget_, {});
+  lock.unlock();
+  for (const JobStatus& job : jobs) static_cast<void>(memory_->remember(job));
+  for (const JobId& id : ids) memory_->forget(id);
 }
 
 JobQueue::JobPtr JobQueue::find(std::string_view id) const {

@@ -52,6 +52,15 @@ struct JobStatus {
   std::string result;                     // JSON, when successful
 };
 
+/// Where jobs are remembered beyond the process. Thread-safe.
+class JobMemory {
+ public:
+  virtual ~JobMemory() = default;
+  /// Durable when it returns. Errors: those of the store.
+  virtual tin::base::Result<void> remember(const JobStatus& job) = 0;
+  virtual void forget(const JobId& id) = 0;
+};
+
 /// Thread-safe.
 class JobQueue {
  public:
@@ -59,12 +68,15 @@ class JobQueue {
   /// soon after that says cancelled(). May throw; bad_alloc becomes kTooLarge, all else kInternal.
   using Work = std::function<tin::base::Result<std::string>(tin::base::Progress&)>;
 
-  explicit JobQueue(const JobLimits& limits);
+  /// `memory`, if there is one, outlives the queue. `earlier` are the jobs of an earlier process, in the
+  /// order in which they were submitted: those that had not finished are dismissed now.
+  explicit JobQueue(const JobLimits& limits, JobMemory* memory = nullptr,
+                    const std::vector<JobStatus>& earlier = {});
   ~JobQueue();
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
 
-  /// Errors: kTooMany when the queue is full or stopped.
+  /// Errors: kTooMany when the queue is full or stopped; those of the memory.
   tin::base::Result<JobId> submit(std::string kind, std::string description, Work work);
 
   /// Nothing when there is no such job, or no more.
@@ -92,11 +104,17 @@ class JobQueue {
   void run_worker();
   JobPtr next_job();
   void run(Job& job);
+  void recall(const std::vector<JobStatus>& earlier);
   void finish(Job& job, JobState state, std::string message);  // with mutex_ held
+  void bring_memory_up();                                      // without it
   JobPtr find(std::string_view id) const;                      // with mutex_ held
 
   const JobLimits limits_;
+  JobMemory* const memory_;
+  std::mutex memory_mutex_;  // before mutex_
   mutable std::mutex mutex_;
+  std::vector<JobStatus> to_remember_;
+  std::vector<JobId> to_forget_;
   mutable std::condition_variable finished_changed_;
   std::condition_variable queue_changed_;
   bool draining_ = false;

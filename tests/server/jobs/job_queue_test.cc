@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <future>
+#include <map>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 
@@ -315,6 +317,86 @@ TEST(JobQueueTest, ManyThreadsSubmitWatchAndDismiss) {
   EXPECT_GT(ran, 0);
   EXPECT_LE(jobs.list().size(), 20u);
   for (const JobStatus& status : jobs.list()) EXPECT_TRUE(status.finished_ms);
+}
+
+/// A memory that a test looks into.
+class Notebook : public JobMemory {
+ public:
+  Result<void> remember(const JobStatus& job) override {
+    const std::lock_guard guard(mutex_);
+    if (fail) return tin::base::error(Code::kStorage, "no disk");
+    jobs[job.id] = job;
+    return {};
+  }
+  void forget(const JobId& id) override {
+    const std::lock_guard guard(mutex_);
+    jobs.erase(id);
+  }
+  JobState state(const JobId& id) {
+    const std::lock_guard guard(mutex_);
+    return jobs.at(id).state;
+  }
+
+  std::map<JobId, JobStatus> jobs;
+  bool fail = false;
+
+ private:
+  std::mutex mutex_;
+};
+
+TEST(JobMemoryTest, WhatBecameOfAJobIsRememberedBeforeItIsTold) {
+  Notebook notebook;
+  JobQueue jobs({.workers = 1, .max_queued = 4, .max_kept = 2}, &notebook);
+  const auto id = jobs.submit("k", "d", [](tin::base::Progress&) { return Result<std::string>("{}"); });
+  ASSERT_TRUE(id.ok());
+  ASSERT_TRUE(jobs.wait(*id, std::chrono::seconds(30))->finished_ms);
+  EXPECT_EQ(notebook.state(*id), JobState::kSuccessful);
+  EXPECT_EQ(notebook.jobs.at(*id).result, "{}");
+  for (int i = 0; i < 3; ++i) {
+    const auto more = jobs.submit("k", "d", [](tin::base::Progress&) -> Result<std::string> {
+      return tin::base::error(Code::kTooLarge, "too much", "/inputs");
+    });
+    ASSERT_TRUE(more.ok());
+    jobs.wait(*more, std::chrono::seconds(30));
+  }
+  jobs.stop();
+  EXPECT_EQ(notebook.jobs.size(), 2U) << "it forgets what the queue forgets";
+  EXPECT_FALSE(notebook.jobs.contains(*id));
+  EXPECT_EQ(notebook.jobs.begin()->second.error->where, "/inputs");
+}
+
+TEST(JobMemoryTest, AJobThatCannotBeRememberedIsNotTaken) {
+  Notebook notebook;
+  notebook.fail = true;
+  JobQueue jobs({}, &notebook);
+  const auto id = jobs.submit("k", "d", [](tin::base::Progress&) { return Result<std::string>("{}"); });
+  ASSERT_FALSE(id.ok());
+  EXPECT_EQ(id.error().code, Code::kStorage);
+  EXPECT_TRUE(jobs.list().empty());
+}
+
+TEST(JobMemoryTest, ARestartKeepsResultsAndDismissesWhatHadNotFinished) {
+  Notebook notebook;
+  const auto job = [](const char* id, JobState state) {
+    JobStatus status;
+    status.id = id;
+    status.state = state;
+    return status;
+  };
+  JobStatus done = job("done", JobState::kSuccessful);
+  done.finished_ms = 5;
+  done.result = "{\"a\":1}";
+  const JobStatus ran = job("ran", JobState::kRunning), waited = job("waited", JobState::kAccepted);
+  for (const JobStatus& each : {done, ran, waited}) ASSERT_TRUE(notebook.remember(each).ok());
+  JobQueue jobs({}, &notebook, {done, ran, waited});
+  EXPECT_EQ(jobs.status("done")->result, done.result);
+  for (const char* id : {"ran", "waited"}) {
+    EXPECT_EQ(jobs.status(id)->state, JobState::kDismissed);
+    EXPECT_NE(jobs.status(id)->message.find("restart"), std::string::npos);
+    EXPECT_EQ(notebook.state(id), JobState::kDismissed);
+  }
+  EXPECT_EQ(jobs.list().size(), 3U);
+  EXPECT_EQ(jobs.list().back().id, "done");
 }
 
 }  // namespace
