@@ -66,6 +66,12 @@ struct CreateTin {
 };
 tin::base::Result<CreateTin> read_create_tin(std::string_view body, std::size_t max_vertices);
 
+/// Who makes a revision and why, as they say; either may be empty.
+struct Remark {
+  std::string author;
+  std::string note;
+};
+
 struct InsertOp {
   double x = 0, y = 0, z = 0;
 };
@@ -86,6 +92,7 @@ using EditOp = std::variant<InsertOp, RemoveOp, MoveOp, SetZOp>;
 struct EditRequest {
   std::vector<EditOp> ops;
   std::optional<std::string> crs;
+  Remark remark;
 };
 tin::base::Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops);
 

@@ -1,12 +1,16 @@
-// What the writers of messages share.
+// What the readers and the writers of messages share.
 #pragma once
 
 #include <span>
 
+#include "proto/json_read.h"
 #include "proto/json_write.h"
 #include "proto/messages.h"
 
 namespace proto {
+
+/// The members "author" and "note". Errors: kMalformed, kTooLarge, kInvalidValue (control characters).
+tin::base::Result<Remark> read_remark(const Object& object);
 
 /// The member "links".
 void write_links(JsonWriter& json, std::span<const Link> links);

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "proto/crs_uri.h"
 #include "proto/json_read.h"
 #include "proto/messages.h"
+#include "proto/messages_internal.h"
 #include "proto/processes/process.h"
 #include "proto/utf8.h"
 
@@ -204,6 +206,25 @@ bool is_tin_id(std::string_view id) {
          std::all_of(id.begin(), id.end(), [](char c) { return is_alphanumeric(c) || c == '_' || c == '-'; });
 }
 
+Result<Remark> read_remark(const Object& object) {
+  constexpr std::size_t kMaxAuthor = 200, kMaxNote = 2000;
+  Remark remark;
+  for (const auto& [name, most, text] : {std::tuple("author", kMaxAuthor, &remark.author),
+                                         std::tuple("note", kMaxNote, &remark.note)}) {
+    const auto member = object.find(name);
+    if (!member) continue;
+    auto given = member->string(most);
+    if (!given) return std::move(given).error();
+    const auto is_control = [](char c) {
+      return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t';
+    };
+    if (std::any_of(given->begin(), given->end(), is_control))
+      return member->error(Code::kInvalidValue, "there must be no control characters here");
+    *text = *given;
+  }
+  return remark;
+}
+
 Result<void> check_title(std::string_view title, std::string where) {
   if (title.size() > kMaxTitle) {
     return error(Code::kTooLarge, "a title has at most " + std::to_string(kMaxTitle) + " bytes",
@@ -268,12 +289,15 @@ Result<CreateTin> read_create_tin(std::string_view body, std::size_t max_vertice
 Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops) {
   auto document = Document::parse(body);
   if (!document) return std::move(document).error();
-  auto object = document->root().object({"ops", "crs"});
+  auto object = document->root().object({"ops", "crs", "author", "note"});
   if (!object) return std::move(object).error();
   EditRequest request;
   auto crs = read_crs(*object);
   if (!crs) return std::move(crs).error();
   request.crs = std::move(*crs);
+  auto remark = read_remark(*object);
+  if (!remark) return std::move(remark).error();
+  request.remark = std::move(*remark);
   auto member = object->require("ops");
   if (!member) return std::move(member).error();
   auto ops = member->array(max_ops);

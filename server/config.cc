@@ -46,6 +46,8 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/uploads_at_once", {&limits.uploads_at_once, 1, 1000}},
           {"/limits/exports_at_once", {&limits.exports_at_once, 1, 1000}},
           {"/limits/export_seconds", {&limits.export_seconds, 1, kMillion}},
+          {"/limits/edits_at_once", {&limits.edits_at_once, 1, 10'000}},
+          {"/limits/listeners", {&limits.listeners, 1, 100'000}},
           {"/limits/page_size", {&limits.page_size, 1, kMillion}},
           {"/limits/page_size_max", {&limits.page_size_max, 1, kMillion}}};
 }
@@ -56,6 +58,14 @@ Numbers numbers_of(JobConfig& jobs) {
           {"/jobs/kept", {&jobs.kept, 1, 100'000}},
           {"/jobs/sync_seconds", {&jobs.sync_seconds, 0, 3600}},
           {"/jobs/sync_waiting", {&jobs.sync_waiting, 1, 1000}}};
+}
+
+Numbers numbers_of(HistoryConfig& history) {
+  return {{"/history/revisions", {&history.revisions, 0, 1000 * kMillion}},
+          {"/history/bytes", {&history.bytes, 0, 1024 * kGiB}},
+          {"/history/checkpoint_steps", {&history.checkpoint_steps, 1, 1000 * kMillion}},
+          {"/history/key_hours", {&history.key_hours, 1, 24 * 366}},
+          {"/history/keys", {&history.keys, 1, 1000 * kMillion}}};
 }
 
 Numbers numbers_of(HttpConfig& http) {
@@ -154,6 +164,7 @@ Result<void> set_key(Config& config, const std::string& key, const json& value) 
   if (key == "log_level") return set_log_level(config, value);
   if (key == "limits") return set_section(numbers_of(config.limits), value, "/limits");
   if (key == "jobs") return set_section(numbers_of(config.jobs), value, "/jobs");
+  if (key == "history") return set_section(numbers_of(config.history), value, "/history");
   if (key == "http") return set_section(numbers_of(config.http), value, "/http");
   return tin::base::error(Code::kUnknownParameter, "there is no such key", token(key));
 }

@@ -36,6 +36,8 @@ struct LimitConfig {
   std::int64_t uploads_at_once = 2;     // files being read beside the jobs
   std::int64_t exports_at_once = 2;     // rasters being made
   std::int64_t export_seconds = 120;    // for making one
+  std::int64_t edits_at_once = 128;     // edits being applied or waiting for the disk
+  std::int64_t listeners = 100;         // streams of changes
   std::int64_t page_size = 1000;        // when a request does not say
   std::int64_t page_size_max = 10'000;  // the most that it may say; not less than page_size
   friend bool operator==(const LimitConfig&, const LimitConfig&) = default;
@@ -49,6 +51,16 @@ struct JobConfig {
       60;                         // how long a request waits for its job before it is told where to ask later
   std::int64_t sync_waiting = 4;  // requests that may wait so; others are told at once
   friend bool operator==(const JobConfig&, const JobConfig&) = default;
+};
+
+/// What is kept of the past. The journal since the last checkpoint is kept in any case.
+struct HistoryConfig {
+  std::int64_t revisions = 100'000;             // per TIN, that can be listed and undone
+  std::int64_t bytes = std::int64_t{1} << 30;   // per TIN, of their records
+  std::int64_t checkpoint_steps = 200'000;      // changed vertices from one checkpoint to the next
+  std::int64_t key_hours = 24;                  // how long an Idempotency-Key is remembered
+  std::int64_t keys = 1'000'000;                // the most of them
+  friend bool operator==(const HistoryConfig&, const HistoryConfig&) = default;
 };
 
 struct HttpConfig {
@@ -78,6 +90,7 @@ struct Config {
   std::string log_level = "info";  // debug, info, warning, error or off
   LimitConfig limits;
   JobConfig jobs;
+  HistoryConfig history;
   HttpConfig http;
   friend bool operator==(const Config&, const Config&) = default;
 };

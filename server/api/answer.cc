@@ -1,8 +1,11 @@
 #include "server/api/answer.h"
 
+#include <algorithm>
 #include <charconv>
+#include <ctime>
 
 #include "proto/problems.h"
+#include "tin/codec/crc32c.h"
 
 namespace server::api {
 
@@ -25,6 +28,10 @@ std::uint64_t hash(std::string_view text) {
   std::uint64_t value = 0xcbf29ce484222325ULL;
   for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   return value;
+}
+
+void append_number(std::string& out, std::uint64_t number) {
+  for (int i = 0; i < 8; ++i) out += static_cast<char>(number >> (8 * i));
 }
 
 std::string tag_prefix(const app::Tin& tin) {
@@ -61,6 +68,7 @@ http::Handler guarded(std::function<Result<Response>(Request&)> handler) {
 
 std::string entity_tag(const app::Tin& tin, std::uint64_t revision, const Request& request) {
   std::string asked = request.path;
+  asked.append(1, '\n').append(tin.title());  // which the TIN's document shows, and no revision counts
   for (const auto& [name, value] : request.query)
     asked.append(1, '\n').append(name).append(1, '=').append(value);
   char digits[17];
@@ -90,6 +98,32 @@ Result<std::vector<std::uint64_t>> expected_revisions(const app::Tin& tin, std::
     return error(Code::kPrecondition, "If-Match names no revision of this TIN.", "header:If-Match");
   }
   return revisions;
+}
+
+Result<std::optional<app::RequestKey>> request_key(const Request& request) {
+  constexpr std::size_t kMostBytes = 255;
+  const std::string_view key = request.header("idempotency-key");
+  if (key.empty()) return std::optional<app::RequestKey>();
+  const bool printable = std::all_of(key.begin(), key.end(), [](char c) { return c > ' ' && c <= '~'; });
+  if (key.size() > kMostBytes || !printable) {
+    return error(Code::kMalformed, "An Idempotency-Key has 1 to 255 printable ASCII characters.",
+                 "header:Idempotency-Key");
+  }
+  // Two hashes and the length: nobody gains by a collision, which would take the client's own key.
+  std::string request_print;
+  append_number(request_print, hash(std::string(request.path).append(1, '\n').append(request.body)));
+  append_number(request_print, tin::codec::crc32c(request.body));
+  append_number(request_print, request.body.size());
+  return std::optional(app::RequestKey{std::string(key), std::move(request_print)});
+}
+
+std::string rfc3339(std::int64_t unix_ms) {
+  const std::time_t seconds = unix_ms / 1000;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
 }
 
 bool prefers_async(const Request& request) {

@@ -40,6 +40,12 @@ std::string entity_tag(const app::Tin& tin, std::uint64_t revision, const Reques
 /// Errors: kPrecondition when it holds no tag of this TIN.
 Result<std::vector<std::uint64_t>> expected_revisions(const app::Tin& tin, std::string_view if_match);
 
+/// The request's Idempotency-Key with a fingerprint of the request, if it bears one. Errors: kMalformed.
+Result<std::optional<app::RequestKey>> request_key(const Request& request);
+
+/// "2026-11-27T08:15:00Z".
+std::string rfc3339(std::int64_t unix_ms);
+
 /// Whether the client prefers to be answered at once and to ask for the result later (RFC 7240).
 bool prefers_async(const Request& request);
 

@@ -37,6 +37,8 @@ Result<Response> edit(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
   if (auto json = require_json(request); !json) return json.error();
+  const Slot slot(context.edits);
+  if (!slot.taken()) return error(Code::kTooMany, "Too many edits wait already.");
   const auto expected = expected_revisions(**tin, request.header("if-match"));
   if (!expected) return expected.error();
   const auto message = proto::read_edit_request(
@@ -48,7 +50,10 @@ Result<Response> edit(Context& context, const Request& request) {
   if (!positions) return positions.error();
   const auto edits = to_world_edits(*message, *positions);
   if (!edits) return edits.error();
-  const auto edited = (*tin)->edit(*edits, *expected, {app::now_ms(), "", ""});
+  const auto key = request_key(request);
+  if (!key) return key.error();
+  const app::Terms terms{*expected, {app::now_ms(), message->remark.author, message->remark.note}, *key};
+  const auto edited = (*tin)->edit(*edits, terms);
   if (!edited) {
     const bool has_place = edited.error().where.starts_with("/");
     return has_place ? within("/ops", edited.error()) : edited.error();

@@ -66,7 +66,7 @@ Result<Response> create(Context& context, const Request& request) {
   const auto at = own_position(*body->at, *crs, frame);
   if (!at) return at.error();
   const app::WorldEdit insert = app::InsertAt{at->x, at->y, *body->z};
-  const auto edited = (*tin)->edit({&insert, 1}, {}, {app::now_ms(), "", ""});
+  const auto edited = (*tin)->edit({&insert, 1}, {{}, {app::now_ms(), "", ""}});
   if (!edited) return in_geometry(edited.error());
   Response response{201, {}, std::string()};
   const std::string path = request.path + "/" + std::to_string(edited->ids[0].value());
@@ -97,7 +97,7 @@ Result<Response> change(Context& context, const Request& request, const EditsOf&
     }
     const auto edits = edits_of(**tin, feature->ids[0]);
     if (!edits) return edits.error();
-    const auto edited = (*tin)->edit(*edits, std::span(&revision, 1), {app::now_ms(), "", ""});
+    const auto edited = (*tin)->edit(*edits, {std::span(&revision, 1), {app::now_ms(), "", ""}});
     if (!edited && edited.error().code == Code::kPrecondition) continue;
     if (!edited) return in_geometry(edited.error());
     Response response{204, {}, std::string()};

@@ -1,6 +1,4 @@
 // /jobs: list, status, results, dismissal (OGC API Processes).
-#include <ctime>
-
 #include "server/api/job_answer.h"
 #include "server/api/routes.h"
 
@@ -10,15 +8,6 @@ using tin::base::Code;
 using tin::base::error;
 
 namespace {
-
-std::string rfc3339(std::int64_t unix_ms) {
-  const std::time_t seconds = unix_ms / 1000;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
 
 proto::JobState state_of(jobs::JobState state) {
   switch (state) {

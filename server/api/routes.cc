@@ -7,6 +7,7 @@ http::Router make_router(Context& context) {
   add_landing(router);
   add_tins(router, context);
   add_edits(router, context);
+  add_history(router, context);
   add_elevation(router, context);
   add_tin_service(router, context);
   add_collections(router, context);

@@ -17,7 +17,9 @@ struct Context {
         config(with),
         uploads(with.limits.uploads_at_once),
         exports(with.limits.exports_at_once),
-        waiting(with.jobs.sync_waiting) {}
+        waiting(with.jobs.sync_waiting),
+        edits(with.limits.edits_at_once),
+        listeners(with.limits.listeners) {}
 
   app::Catalogue& catalogue;
   jobs::JobQueue& jobs;
@@ -25,6 +27,8 @@ struct Context {
   Slots uploads;  // files being read beside the jobs
   Slots exports;  // rasters being made
   Slots waiting;  // requests that wait for their job
+  Slots edits;      // edits being applied or waiting for the disk
+  Slots listeners;  // streams of changes
 };
 
 http::Router make_router(Context& context);
@@ -33,6 +37,7 @@ http::Router make_router(Context& context);
 void add_landing(http::Router& router);
 void add_tins(http::Router& router, Context& context);
 void add_edits(http::Router& router, Context& context);
+void add_history(http::Router& router, Context& context);
 void add_elevation(http::Router& router, Context& context);
 void add_tin_service(http::Router& router, Context& context);
 void add_collections(http::Router& router, Context& context);

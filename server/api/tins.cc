@@ -1,5 +1,6 @@
 // /tins: list, create, show, delete.
 #include "proto/bbox.h"
+#include "proto/history.h"
 #include "server/api/conformance.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
@@ -100,6 +101,16 @@ Result<Response> show(Context& context, const Request& request) {
   Response response = negotiated(request, proto::tin_json(document), kJson, page_of(document));
   response.headers.emplace_back("ETag", negotiated_tag(**tin, document.revision, request));
   return response;
+}
+
+Result<Response> rename(Context& context, const Request& request) {
+  const auto tin = context.catalogue.find(request.path_parameter("tin"));
+  if (!tin) return tin.error();
+  if (auto json = require_json(request); !json) return json.error();
+  const auto title = proto::read_patch_tin(request.body);
+  if (!title) return title.error();
+  if (auto renamed = (*tin)->rename(*title); !renamed) return renamed.error();
+  return show(context, request);
 }
 
 Result<Response> remove(Context& context, const Request& request) {
@@ -204,6 +215,10 @@ void add_tins(http::Router& router, Context& context) {
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});
+  router.add({.method = Method::kPatch,
+              .pattern = "/tins/{tin}",
+              .body = http::BodyKind::kMemory,
+              .handler = on(rename)});
   router.add({.method = Method::kDelete, .pattern = "/tins/{tin}", .handler = on(remove)});
 }
 

@@ -1,10 +1,10 @@
 #include "server/app/catalogue.h"
 
 #include <chrono>
+#include <new>
 #include <random>
 
 #include "server/obs/log.h"
-#include "tin/codec/change.h"
 
 namespace server::app {
 
@@ -20,7 +20,8 @@ std::int64_t now_ms() {
 
 namespace {
 
-constexpr std::chrono::seconds kSweepEvery{30};
+constexpr std::chrono::seconds kSweepEvery{2};
+constexpr std::chrono::minutes kForgetEvery{10};
 
 /// 60 random bits in letters and digits.
 std::string make_up_id() {
@@ -37,8 +38,8 @@ tin::base::Error broken(const store::TinRecord& record, const tin::base::Error& 
 }  // namespace
 
 Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store> store,
-                                                   const LimitConfig& limits) {
-  std::unique_ptr<Catalogue> catalogue(new Catalogue(std::move(store), limits));
+                                                   const LimitConfig& limits, const HistoryConfig& history) {
+  std::unique_ptr<Catalogue> catalogue(new Catalogue(std::move(store), limits, history));
   auto records = catalogue->store_->list();
   if (!records) return records.error();
   for (const store::TinRecord& record : *records) {
@@ -49,28 +50,59 @@ Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store>
   return catalogue;
 }
 
-/// Now and then frees the versions that no page will ask for any more.
+/// Now and then frees the versions that no page will ask for any more, brings checkpoints forward, and
+/// forgets what is older than has to be kept.
 void Catalogue::sweep(const std::stop_token& stop) {
   std::mutex unused;
+  auto answers_due = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
-    for (const auto& tin : list()) tin->drop_expired();
+    try {
+      sweep_once(stop);
+      if (std::chrono::steady_clock::now() >= answers_due) {
+        answers_due = std::chrono::steady_clock::now() + kForgetEvery;
+        forget_answers();
+      }
+    } catch (const std::bad_alloc&) {  // there may be memory the next time
+    }
     std::unique_lock lock(unused);
     stopping_.wait_for(lock, stop, kSweepEvery, [] { return false; });
   }
 }
 
-Result<void> Catalogue::load(const store::TinRecord& record) {
-  auto stored = store_->load(record.id);
-  if (!stored) return stored.error();
-  auto state = Tin::decode(stored->tin, stored->checkpoint);
-  if (!state) return state.error();
-  for (const store::JournalRow& row : stored->journal) {
-    const auto change = tin::codec::decode_change(row.record);
-    if (!change) return change.error();
-    if (auto replayed = state->terrain.replay(*change); !replayed) return replayed;
-    state->terrain.amend(*change);
-    state->revision = row.revision;
+void Catalogue::sweep_once(const std::stop_token& stop) {
+  for (const auto& tin : list()) {
+    tin->drop_expired();
+    if (tin->steps_since_checkpoint() >= static_cast<std::uint64_t>(history_.checkpoint_steps)) keep_up(*tin);
+    if (stop.stop_requested()) return;
   }
+}
+
+/// The journal holds everything, so failing is no loss: the next sweep tries again.
+void Catalogue::keep_up(Tin& tin) {
+  const auto start = std::chrono::steady_clock::now();
+  auto done = tin.write_checkpoint();
+  if (done) {
+    done = store_->trim_journal(tin.id(), {static_cast<std::uint64_t>(history_.revisions),
+                                           static_cast<std::uint64_t>(history_.bytes)});
+  }
+  if (!done) {
+    if (done.error().code != Code::kNotFound)  // else it was deleted meanwhile
+      obs::log_warning("checkpoint_failed", {{"tin", tin.id()}, {"message", done.error().message}});
+    return;
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  obs::log_info("checkpoint", {{"tin", tin.id()}, {"seconds", took.count()}});
+}
+
+void Catalogue::forget_answers() {
+  const std::int64_t kept_ms = history_.key_hours * 3'600'000;
+  const auto done = store_->trim_answers(now_ms() - kept_ms, static_cast<std::uint64_t>(history_.keys));
+  if (!done) obs::log_warning("trim_failed", {{"message", done.error().message}});
+}
+
+Result<void> Catalogue::load(const store::TinRecord& record) {
+  auto state = Tin::load(*store_, record.id);
+  if (!state) return state.error();
   obs::log_info("tin_loaded", {{"tin", record.id},
                                {"vertices", state->terrain.vertex_count()},
                                {"revision", state->revision},

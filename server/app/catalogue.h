@@ -25,7 +25,8 @@ class Catalogue {
  public:
   /// Loads every TIN of the store. Errors: kStorage, kMalformed, kUnsupported: then the data needs a person.
   static tin::base::Result<std::unique_ptr<Catalogue>> open(std::unique_ptr<store::Store> store,
-                                                            const LimitConfig& limits);
+                                                            const LimitConfig& limits,
+                                                            const HistoryConfig& history = {});
 
   /// By id.
   std::vector<std::shared_ptr<Tin>> list() const;
@@ -49,15 +50,21 @@ class Catalogue {
   /// Errors: kNotFound, kStorage.
   tin::base::Result<void> remove(std::string_view id);
 
+  store::Store& store() { return *store_; }
+
  private:
-  Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits)
-      : store_(std::move(store)), limits_(limits) {}
+  Catalogue(std::unique_ptr<store::Store> store, const LimitConfig& limits, const HistoryConfig& history)
+      : store_(std::move(store)), limits_(limits), history_(history) {}
   tin::base::Result<void> load(const store::TinRecord& record);
   void sweep(const std::stop_token& stop);
+  void sweep_once(const std::stop_token& stop);
+  void keep_up(Tin& tin);
+  void forget_answers();
   tin::base::Result<void> check_room_locked(const std::optional<std::string>& id) const;
 
   std::unique_ptr<store::Store> store_;
   const LimitConfig limits_;
+  const HistoryConfig history_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Tin>, std::less<>> tins_;
   std::set<std::string, std::less<>> being_created_;

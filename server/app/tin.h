@@ -2,8 +2,11 @@
 //
 // Short reads (an elevation, a page) run under a shared lock. Long ones (an export, a simplification) take a
 // version(): an immutable terrain that costs nothing as long as nobody edits. The first edit while a version
-// is out copies the terrain, at memory speed, and goes on with the copy; so no reader holds up an editor for
-// longer than that. An edit is journaled durably before readers see it.
+// is out copies the terrain, at memory speed and beside the readers, and goes on with the copy.
+//
+// Writes queue; whoever is first carries out what waits as one batch: applies it, takes it back, commits it,
+// and performs it again for readers to see. So nobody ever sees what may be lost, and readers wait for no
+// disk.
 #pragma once
 
 #include <array>
@@ -19,7 +22,11 @@
 #include <vector>
 
 #include "server/app/fair_mutex.h"
+#include "server/app/thinning.h"
 #include "server/app/version.h"
+#include "server/app/world_edit.h"
+#include "server/app/write.h"
+#include "server/app/write_queue.h"
 #include "server/store/store.h"
 #include "tin/base/result.h"
 #include "tin/terrain/source_samples.h"
@@ -27,40 +34,7 @@
 
 namespace server::app {
 
-using VertexId = tin::terrain::VertexId;
-
-/// Edits with positions in the TIN's CRS. The frame turns them into lattice points.
-struct InsertAt {
-  double x = 0, y = 0, z = 0;
-};
-struct MoveTo {
-  VertexId id;
-  double x = 0, y = 0;
-};
-using WorldEdit = std::variant<InsertAt, tin::terrain::Remove, MoveTo, tin::terrain::SetZ>;
-
-/// What becomes of a TIN's frame when its first vertices arrive: fitted to them with these lattice steps (0:
-/// chosen).
-using OpenResolution = std::optional<std::array<double, 2>>;
-
-struct Edited {
-  std::uint64_t revision = 0;
-  std::vector<VertexId> ids;  // one per edit
-};
-
-/// What a simplification does to the vertices of the version that it saw.
-struct Thinning {
-  std::vector<VertexId> removed;                    // ascending
-  std::vector<tin::terrain::Placement> inserted;    // samples that become vertices again, by position
-  std::vector<tin::terrain::Vertex> reset;          // vertices that get another height, by id
-
-  bool empty() const { return removed.empty() && inserted.empty() && reset.empty(); }
-};
-
-/// `terrain` after it, built anew.
-tin::terrain::Terrain thinned(const tin::terrain::Terrain& terrain, const Thinning& thinning);
-
-/// What became of it.
+/// What became of a simplification.
 struct Landed {
   std::uint64_t revision = 0;
   std::size_t vertices_left = 0;
@@ -86,6 +60,7 @@ struct TinState {
   tin::terrain::Duplicates duplicates = tin::terrain::Duplicates::kReplace;
   OpenResolution open_resolution;
   std::uint64_t revision = 1;
+  std::uint64_t steps_since_checkpoint = 0;
 };
 
 /// Thread-safe.
@@ -94,7 +69,7 @@ class Tin {
   Tin(TinState state, store::Store& store, std::size_t max_vertices);
 
   const std::string& id() const { return record_.id; }
-  const std::string& title() const { return record_.title; }
+  std::string title() const;
   /// Tells this TIN from a later one of the same id.
   std::int64_t created_ms() const { return record_.created_ms; }
   tin::terrain::Duplicates duplicates() const { return duplicates_; }
@@ -104,6 +79,7 @@ class Tin {
   template <class F>
   auto read(F&& f) const {
     const std::shared_lock lock(mutex_);
+    require_terrain();
     return f(std::as_const(*terrain_), revision_);
   }
   Version version() const;
@@ -116,28 +92,49 @@ class Tin {
   /// The version of that revision: the present one or one kept for pages. Errors: kGone.
   tin::base::Result<Version> page_version(std::uint64_t revision) const;
 
-  /// Applies all edits or none; durable when it returns. `expected`: the present revision must be one of
-  /// these, if any are given. Errors: kPrecondition; as frame::to_lattice and Terrain::apply, at "/i";
-  /// kTooLarge (vertices per TIN); kNotFound (retired); kStorage.
-  tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, std::span<const std::uint64_t> expected,
+  /// The present revision: what it holds is durable.
+  std::uint64_t revision() const;
+
+  /// Applies all edits or none; durable when it returns. Under a key that was used before: what was answered
+  /// then. Errors: kPrecondition; kInvalidValue (the key came with another request before); as
+  /// frame::to_lattice and Terrain::apply, at "/i"; kTooLarge (vertices per TIN); kTooMany (no memory);
+  /// kNotFound (retired); kStorage; kNoSpace.
+  tin::base::Result<Edited> edit(std::span<const WorldEdit> edits, const Terms& terms);
+
+  /// Undoes one revision, as a revision. Errors: kNotFound (no such revision), kGone (it is no longer kept),
+  /// kConflict (later ones changed what it changed), and as edit().
+  tin::base::Result<Edited> revert(std::uint64_t revision, const Terms& terms);
+
+  /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`,
+  /// and positions where another stands by now, stay out of it. A large one is prepared beside readers and
+  /// editors. Errors: kTooLarge (vertices per TIN), kNotFound (retired), kStorage.
+  tin::base::Result<Landed> land(const Version& seen, const Thinning& thinning,
                                  const store::RevisionInfo& info);
 
-  /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`, and positions
-  /// where another stands by now, stay out of it. A large one is prepared beside readers and editors. Errors:
-  /// kTooLarge (vertices per TIN), kNotFound (retired), kStorage.
-  tin::base::Result<Landed> land(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info);
-
-  /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store when nobody
-  /// else has them in hand, and given back when the last one lets go. Errors: kNotFound (retired), kStorage, kMalformed.
+  /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store
+  /// when nobody else has them in hand, and given back when the last one lets go. Errors: kNotFound
+  /// (retired), kStorage, kMalformed.
   tin::base::Result<std::shared_ptr<const tin::terrain::SourceSamples>> source() const;
   /// The same as bytes, for another TIN; empty where none are kept. Errors: kNotFound (retired), kStorage.
   tin::base::Result<std::string> source_bytes() const;
+
+  /// Errors: kNotFound (retired), kStorage, kNoSpace.
+  tin::base::Result<void> rename(std::string_view title);
 
   /// Removes the TIN from the store. Those who hold it still may read it; edits get kNotFound, so that none
   /// of them, and no job that ends late, can reach a later TIN of the same id. Errors: kNotFound (it is gone
   /// already), kStorage.
   tin::base::Result<void> retire();
 
+  /// Steps in the journal that a start would have to replay.
+  std::uint64_t steps_since_checkpoint() const { return steps_since_checkpoint_.load(); }
+  /// Brings the checkpoint up to the present revision, out of the last one and the journal: the terrain is
+  /// not asked, so that nobody waits. Not by two threads at once. Errors: kNotFound (retired), kStorage,
+  /// kNoSpace.
+  tin::base::Result<void> write_checkpoint();
+
+  /// What the store has of a TIN. Errors: kNotFound, kStorage, kMalformed, kUnsupported, kConflict.
+  static tin::base::Result<TinState> load(store::Store& store, std::string_view id);
   /// A state as a checkpoint, and back.
   static std::string encode(const tin::terrain::Terrain& terrain, tin::terrain::Duplicates duplicates,
                             const OpenResolution& open_resolution, std::uint64_t revision);
@@ -145,23 +142,44 @@ class Tin {
 
  private:
   using Terrain = tin::terrain::Terrain;
+  using Lock = std::unique_lock<FairSharedMutex>;
+  struct Batch;
 
   tin::base::Error too_many_vertices() const;
-  void own_terrain();  // copies it if a version is out; with mutex_ held
-  tin::base::Result<std::shared_ptr<Terrain>> fit_open_frame(std::span<const WorldEdit> edits) const;
-  tin::base::Result<void> journal(const tin::terrain::Change& change, const store::RevisionInfo& info);
-  void replace_terrain(std::shared_ptr<Terrain> terrain);
-  tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning,
-                                          const store::RevisionInfo& info);
-  void write_checkpoint();
+  void require_terrain() const;  // throws if it was lost
 
-  const store::TinRecord record_;
+  // The writer's turn: one thread at a time, see WriteQueue.
+  tin::base::Result<Edited> submit(Write& write);
+  void carry_out(std::span<Write* const> writes);
+  bool settled_before(Write& write);
+  void carry_out_together(std::span<Write* const> writes);
+  void apply_all(std::span<Write* const> writes, Batch& batch);
+  void apply_one(Write& write, Batch& batch);
+  void take_back(const Batch& batch);
+  void publish(Batch& batch, const tin::base::Result<void>& durable);
+  void fit_and_apply(Write& write);
+  void take_over(Write& write);
+  store::Entry entry_of(const Write& write, const tin::terrain::Change& change, const Edited& edited) const;
+  tin::base::Result<void> commit(std::span<const store::Entry> entries);
+  Lock exclusive();
+  void replace_terrain(std::shared_ptr<Terrain> terrain);
+  void reload() noexcept;
+
+  tin::base::Result<std::optional<Edited>> answered_before(const Terms& terms);
+  tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning, const Terms& terms);
+  tin::base::Result<Edited> replay_aside(const tin::terrain::Change& change, const Terms& terms);
+  tin::base::Error explain_conflict(std::uint64_t revision, const tin::terrain::Change& inverse,
+                                    const tin::base::Error& conflict);
+
+  store::TinRecord record_;  // its title under title_mutex_, the rest constant
+  mutable std::mutex title_mutex_;
   const tin::terrain::Duplicates duplicates_;
   store::Store& store_;
   const std::size_t max_vertices_;
 
+  // Changed in the writer's turn and under mutex_: readers hold it shared, the writer reads without it.
   mutable FairSharedMutex mutex_;
-  std::shared_ptr<Terrain> terrain_;
+  std::shared_ptr<Terrain> terrain_;  // null: lost for want of memory, to be loaded again
   mutable std::shared_ptr<std::atomic<int>> versions_out_;  // of terrain_
   OpenResolution open_resolution_;
   std::uint64_t revision_;
@@ -170,9 +188,10 @@ class Tin {
   mutable std::mutex cache_mutex_;
   mutable std::optional<Summary> summary_;
   KeptVersions kept_;
-
   mutable std::mutex source_mutex_;  // held while the source is read, so that it is read once
   mutable std::weak_ptr<const tin::terrain::SourceSamples> source_;
+  std::atomic<std::uint64_t> steps_since_checkpoint_;
+  WriteQueue<Write> writes_;
 };
 
 }  // namespace server::app

@@ -8,8 +8,8 @@ namespace server::http {
 namespace {
 
 constexpr std::string_view kRequestFields =
-    "Accept, Authorization, Content-Disposition, Content-Type, If-Match, If-None-Match, "
-    "Last-Event-ID, Prefer";
+    "Accept, Authorization, Content-Disposition, Content-Type, Idempotency-Key, If-Match, "
+    "If-None-Match, Last-Event-ID, Prefer";
 
 Response describe_options(const std::vector<Method>& allowed) {
   Response response;

@@ -80,6 +80,11 @@ class AnswersTest : public testing::Test {
             {{"GET", "/tins/empty"}, 200},
             {{"GET", "/tins/hill?a=1"}, 400},
             {{"GET", "/tins/none"}, 404},
+            {{"PATCH", "/tins/hill", "application/json", R"({"title":"The hill"})"}, 200},
+            {{"PATCH", "/tins/hill", "application/json", R"({"name":"x"})"}, 400},
+            {{"PATCH", "/tins/none", "application/json", R"({"title":"x"})"}, 404},
+            {{"PATCH", "/tins/hill", "text/plain", R"({"title":"x"})"}, 415},
+            {{"PATCH", "/tins/hill", "application/json", R"({"title":"a\nb"})"}, 422},
             {{"DELETE", "/tins/new"}, 204},
             {{"DELETE", "/tins/new"}, 404},
             {{"DELETE", "/tins/hill?a=1"}, 400},
@@ -102,6 +107,33 @@ class AnswersTest : public testing::Test {
             {{"POST", path, "text/plain", set_z}, 415},
             {{"POST", path, json, R"({"ops":[{"op":"remove","id":99}]})"}, 422},
             {{"GET", path}, 405}});
+  }
+
+  void ask_history() {
+    const std::string path = "/tins/hill", json = "application/json";
+    const std::string undo = path + "/revisions/2/revert";
+    expect({{{"GET", path + "/revisions"}, 200},
+            {{"GET", path + "/revisions?limit=1"}, 200},
+            {{"GET", "/tins/empty/revisions"}, 200},
+            {{"GET", path + "/revisions?next=x"}, 400},
+            {{"GET", "/tins/none/revisions"}, 404},
+            {{"GET", path + "/revisions?limit=0"}, 422},
+            {{"GET", path + "/changes"}, 200},
+            {{"GET", path + "/changes?since=1&limit=1"}, 200},
+            {{"GET", path + "/changes?since=x"}, 400},
+            {{"GET", "/tins/none/changes"}, 404},
+            {{"GET", path + "/changes?since=1000"}, 422},
+            {{"POST", undo, json, "[]"}, 400},
+            {{"POST", "/tins/none/revisions/2/revert"}, 404},
+            {{"POST", path + "/revisions/1000/revert"}, 404},
+            {{"POST", path + "/revisions/1/revert"}, 410},
+            {{"POST", undo, json, "{}", "If-Match: \"0-0\"\r\n"}, 412},
+            {{"POST", undo, "text/plain", "{}"}, 415},
+            {{"POST", undo, json, R"({"note":"\u0001"})"}, 422},
+            {{"POST", undo, json, R"({"author":"ada"})"}, 200},
+            {{"POST", undo}, 409}});
+    server_.forget_history("hill");
+    expect({{{"GET", path + "/changes?since=1"}, 410}});
   }
 
   void ask_elevations() {
@@ -338,6 +370,7 @@ TEST_F(AnswersTest, EveryDocumentedStatusIsGivenAndFitsItsSchema) {
   ask_service();
   ask_tins();
   ask_edits();
+  ask_history();
   ask_elevations();
   ask_slopes_and_lines();
   ask_contours_and_volumes();

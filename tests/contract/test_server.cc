@@ -16,7 +16,7 @@ TestServer::TestServer(const std::function<void(server::Config&)>& adjust) {
   if (adjust) adjust(config_);
   auto store = server::store::open_sqlite_store(config_.data_dir);
   if (!store) throw std::runtime_error(store.error().message);
-  auto catalogue = server::app::Catalogue::open(std::move(*store), config_.limits);
+  auto catalogue = server::app::Catalogue::open(std::move(*store), config_.limits, config_.history);
   if (!catalogue) throw std::runtime_error(catalogue.error().message);
   catalogue_ = std::move(*catalogue);
   jobs_ = std::make_unique<server::jobs::JobQueue>(server::jobs::JobLimits{
@@ -71,6 +71,13 @@ RawAnswer TestServer::upload(std::string target, std::string content_type, std::
 
 RawAnswer TestServer::remove(std::string target) {
   return ask({"DELETE", std::move(target)});
+}
+
+void TestServer::forget_history(const std::string& id) {
+  const auto tin = catalogue_->find(id);
+  ASSERT_TRUE(tin.ok());
+  ASSERT_TRUE((*tin)->write_checkpoint().ok());
+  ASSERT_TRUE(catalogue_->store().trim_journal(id, {.revisions = 0}).ok());
 }
 
 std::string TestServer::state() {

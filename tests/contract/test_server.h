@@ -39,6 +39,8 @@ class TestServer {
   Json tin(const std::string& id);
   /// What became of a job ("/jobs/x"), as soon as that is known.
   std::string finished(const std::string& job);
+  /// Brings the checkpoint of a TIN forward and forgets its revisions.
+  void forget_history(const std::string& id);
   /// The names of files that uploads and exports left behind: none, as soon as the server has tidied up after
   /// its last answer.
   std::set<std::string> leftovers() const;

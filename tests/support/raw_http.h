@@ -99,6 +99,12 @@ class RawClient {
     return std::exchange(in_, {});
   }
 
+  /// What has arrived, or what arrives next; "" when nothing does any more.
+  std::string read_some() {
+    if (in_.empty()) read_more();
+    return std::exchange(in_, {});
+  }
+
   /// Whether the server has closed (or closes within the receive timeout) without sending more.
   bool closed() { return in_.empty() && !read_more() && last_error_ != EAGAIN; }
 

@@ -65,7 +65,7 @@ TEST(ConfigTest, APublicUrlIsOneOfTheWeb) {
 
 TEST(ConfigTest, TheExampleHasEveryKey) {
   constexpr std::size_t kNumbers =
-      (sizeof(LimitConfig) + sizeof(JobConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
+      (sizeof(LimitConfig) + sizeof(JobConfig) + sizeof(HistoryConfig) + sizeof(HttpConfig)) / sizeof(std::int64_t);
   EXPECT_EQ(example().flatten().size(), kNumbers + 3);  // and listen, data_dir, log_level
 }
 
