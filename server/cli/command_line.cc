@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "server/cli/check.h"
 #include "server/cli/info.h"
 #include "server/cli/output_file.h"
 #include "server/cli/serve.h"
@@ -60,6 +61,32 @@ CLI::App* add_info(CLI::App& app, InfoArguments& arguments) {
   return command;
 }
 
+/// A data folder, and a file beside it.
+struct FolderArguments {
+  std::string folder, file;
+};
+
+CLI::App* add_check(CLI::App& app, FolderArguments& arguments) {
+  auto* command =
+      app.add_subcommand("check", "Verify a data folder: checksums, digests, Delaunay (0 sound, 1 damaged)");
+  command->add_option("folder", arguments.folder, "The data folder; a server may run on it")->required();
+  return command;
+}
+
+CLI::App* add_backup(CLI::App& app, FolderArguments& arguments) {
+  auto* command = app.add_subcommand("backup", "Write a data folder to one file; a server may run on it");
+  command->add_option("folder", arguments.folder, "The data folder")->required();
+  command->add_option("file", arguments.file, "The backup, which must not be there yet")->required();
+  return command;
+}
+
+CLI::App* add_restore(CLI::App& app, FolderArguments& arguments) {
+  auto* command = app.add_subcommand("restore", "Make a data folder of a backup");
+  command->add_option("file", arguments.file, "The backup")->required();
+  command->add_option("folder", arguments.folder, "A folder that is empty or not there yet")->required();
+  return command;
+}
+
 }  // namespace
 
 int run(int argc, char** argv) {
@@ -69,9 +96,13 @@ int run(int argc, char** argv) {
   ServeArguments serving;
   SimplifyArguments simplifying;
   InfoArguments informing;
+  FolderArguments keeping;
   add_serve(app, serving);
   const auto* simplify_command = add_simplify(app, simplifying);
   const auto* info_command = add_info(app, informing);
+  const auto* check_command = add_check(app, keeping);
+  const auto* backup_command = add_backup(app, keeping);
+  const auto* restore_command = add_restore(app, keeping);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -79,6 +110,9 @@ int run(int argc, char** argv) {
   }
   if (simplify_command->parsed()) return simplify(simplifying);
   if (info_command->parsed()) return info(informing);
+  if (check_command->parsed()) return check(keeping.folder);
+  if (backup_command->parsed()) return back_up(keeping.folder, keeping.file);
+  if (restore_command->parsed()) return restore(keeping.file, keeping.folder);
   return serve(serving);
 }
 

@@ -11,6 +11,7 @@
 #include "server/api/answer.h"
 #include "server/api/routes.h"
 #include "server/app/catalogue.h"
+#include "server/app/stored_jobs.h"
 #include "server/config.h"
 #include "server/http/server.h"
 #include "server/jobs/job_queue.h"
@@ -54,7 +55,8 @@ http::ServerOptions http_options(const Config& config) {
   const auto by_cores = static_cast<std::int64_t>(std::max(8U, 2 * std::thread::hardware_concurrency()));
   const std::int64_t for_short = config.http.worker_threads == 0 ? by_cores : config.http.worker_threads;
   const std::int64_t for_long =
-      config.limits.uploads_at_once + config.limits.exports_at_once + config.jobs.sync_waiting;
+      config.limits.uploads_at_once + config.limits.exports_at_once + config.jobs.sync_waiting +
+      config.limits.edits_at_once;
   options.worker_threads = static_cast<int>(for_short + for_long);
   options.header_bytes = static_cast<std::size_t>(config.http.header_bytes);
   options.header_fields = static_cast<std::size_t>(config.http.header_fields);
@@ -121,6 +123,7 @@ int serve(const ServeArguments& arguments) {
   sigaddset(&signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error of the write, not an end of the server
 
   std::error_code unmade;
   std::filesystem::create_directories(config->data_dir, unmade);
@@ -129,11 +132,15 @@ int serve(const ServeArguments& arguments) {
   auto store = store::open_sqlite_store(config->data_dir);
   if (!store) return fail(store.error());
   clear_temporary_files(config->data_dir);
-  const auto catalogue = app::Catalogue::open(std::move(*store), config->limits);
+  const auto catalogue = app::Catalogue::open(std::move(*store), config->limits, config->history);
   if (!catalogue) return fail(catalogue.error());
+  app::StoredJobs memory((*catalogue)->store());
+  const auto earlier = memory.recall();
+  if (!earlier) return fail(earlier.error());
   jobs::JobQueue jobs({static_cast<std::size_t>(config->jobs.workers),
                        static_cast<std::size_t>(config->jobs.queued),
-                       static_cast<std::size_t>(config->jobs.kept)});
+                       static_cast<std::size_t>(config->jobs.kept)},
+                      &memory, *earlier);
   api::Context context{**catalogue, jobs, *config};
   http::Server server(http_options(*config), api::make_router(context), api::error_pages(), observer());
   const auto port = server.start();
