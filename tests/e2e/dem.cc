@@ -160,8 +160,8 @@ std::vector<std::pair<int, int>> strictly_inside(const Dem& dem, const nlohmann:
     std::array<Node, 3> t{pixels.place(ring.at(0)), pixels.place(ring.at(1)), pixels.place(ring.at(2))};
     if (turn(t[0], t[1], t[2].column, t[2].row) < 0) std::swap(t[1], t[2]);
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] =
-          std::minmax(std::pair(t[i].column, t[i].row), std::pair(t[(i + 1) % 3].column, t[(i + 1) % 3].row));
+      std::pair a(t[i].column, t[i].row), b(t[(i + 1) % 3].column, t[(i + 1) % 3].row);
+      if (b < a) std::swap(a, b);
       ++sides[{a.first, a.second, b.first, b.second}];
     }
     triangles.push_back(t);

@@ -113,7 +113,7 @@ TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
   expect({input, "-o", path("no/such/out.tif"), "-t", "1"}, 1, "No such file");
   expect({path("nowhere.tif"), "-o", out, "-t", "1"}, 1, "nowhere.tif");
   expect({path("text.txt"), "-o", out, "-t", "1"}, 1, "text.txt");
-  expect({input, "-o", out, "-t", "1", "--crs", "EPSG:1"}, 1, "EPSG:1");
+  expect({input, "-o", out, "-t", "1", "--crs", "EPSG:1"}, 1, "no coordinate reference system 1");
   std::string text;
   std::getline(std::ifstream(out), text);
   EXPECT_EQ(text, "as it was");
