@@ -76,8 +76,10 @@ Response metrics_answer(const Context& context) {
           text.take()};
 }
 
-Response readiness(const Context& context) {
+Response readiness(Context& context) {
   if (context.draining) return error_pages().status(503, "The server is about to stop.");
+  if (auto writable = context.catalogue.store().writable(); !writable)
+    return error_pages().status(503, "The store takes no more writes: " + writable.error().message);
   Response ready = json_answer(proto::health_json("ready", version()));
   ready.headers.emplace_back("Cache-Control", "no-store");
   return ready;

@@ -18,7 +18,7 @@ class TileCacheTest : public testing::Test {
   TileCacheTest() {
     auto store = server::store::open_sqlite_store(folder_.path());
     catalogue_ = std::move(*server::app::Catalogue::open(std::move(*store), {}));
-    tin_ = *catalogue_->create({"hills", "Hills", tests::tiles::scattered(20000), tin::terrain::Duplicates::kReplace, std::nullopt});
+    tin_ = *catalogue_->create({"hills", "Hills", tests::tiles::scattered(20000), tin::terrain::Duplicates::kReplace, std::nullopt, {}});
   }
   std::shared_ptr<const CachedTile> get(TileKind kind, const TileId& id) {
     auto tile = cache_.get(*tin_, kind, id);
@@ -34,7 +34,7 @@ class TileCacheTest : public testing::Test {
   }
   void insert(double x, double y, double z) {
     const server::app::WorldEdit edit = server::app::InsertAt{x, y, z};
-    ASSERT_TRUE(tin_->edit({&edit, 1}, {}, {}).ok());
+    ASSERT_TRUE(tin_->edit({&edit, 1}, server::app::Terms{}).ok());
   }
 
   tests::support::TempDir folder_;
