@@ -83,7 +83,7 @@ TEST(GeoJsonTest, ExactCoordinatesAndTheLatticeTheyLieOn) {
   writer.vertex(id(1), {1.0 / 3, 1e-12, 2});
   writer.end();
   EXPECT_EQ(out, R"({"type":"FeatureCollection","tinsmith-frame":{"crs":""},"features":[
-{"type":"Feature","id":1,"geometry":{"type":"Point","coordinates":[0.3333333333333333,1e-12,2]},"properties":{"z":2}}
+{"type":"Feature","id":1,"geometry":{"type":"Point","coordinates":[0.3333333333333333,1e-12,2]},"properties":{"z":2.0}}
 ]}
 )");
   EXPECT_TRUE(tests_support::schema_violations("FeatureCollection", out).empty());
