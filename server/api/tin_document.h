@@ -9,6 +9,6 @@ namespace server::api {
 proto::TinDocument tin_document(const app::Tin& tin);
 
 /// 201 with Location, ETag and the document.
-Response created_answer(const app::Tin& tin, const Request& request);
+Response created_answer(const Context& context, const app::Tin& tin, const Request& request);
 
 }  // namespace server::api

@@ -56,8 +56,9 @@ proto::TinDocument tin_document(const app::Tin& tin) {
   return document;
 }
 
-Response created_answer(const app::Tin& tin, const Request& request) {
-  const proto::TinDocument document = tin_document(tin);
+Response created_answer(const Context& context, const app::Tin& tin, const Request& request) {
+  proto::TinDocument document = tin_document(tin);
+  make_absolute(document.links, base_url(context.config, request));
   Response response = json_answer(proto::tin_json(document), 201);
   response.headers.emplace_back("Location", "/tins/" + tin.id());
   Request self;
@@ -189,7 +190,7 @@ Result<Response> create_from_json(Context& context, const Request& request) {
   auto made = context.catalogue.create({message->id, message->title.value_or(""), std::move(*terrain),
                                         message->duplicates, open, std::move(source)});
   if (!made) return made.error();
-  return created_answer(**made, request);
+  return created_answer(context, **made, request);
 }
 
 Result<Response> create(Context& context, Request& request) {

@@ -192,7 +192,7 @@ Result<Response> create_from_upload(Context& context, Request& request) {
   tin::base::Progress progress;
   const auto made = app::import_tin(context.catalogue, request.body_file, *import, progress);
   if (!made) return made.error();
-  return created_answer(**made, request);
+  return created_answer(context, **made, request);
 }
 
 }  // namespace server::api

@@ -47,7 +47,7 @@ TEST_F(ImportsTest, ClassesThatAreNoneChangeNothing) {
            {"?layer=none", "<LandXML><Surfaces/></LandXML>", 422},
            {"", "<LandXML><Surfaces/></LandXML>", 422},
            {"", "v 1 2\n", 400},
-           {"", "\x89HDF", 415},
+           {"", "\x89HDF", 422},
            {"?format=obj", "v 1 2\n", 400},
            {"", "<!DOCTYPE a [<!ENTITY b \"c\">]><LandXML/>", 415}}) {
     SCOPED_TRACE(query + " " + body.substr(0, 20));

@@ -47,7 +47,7 @@ std::vector<std::string> good_requests() {
   all.push_back(
       "POST /tins/t/edits HTTP/1.1\r\nHost: t\r\nContent-Type: application/json\r\nTransfer-Encoding: "
       "chunked\r\n\r\n"
-      "b\r\n{\"ops\":[{\"o\r\n1b\r\np\":\"set-z\",\"id\":1,\"z\":1.0}]}\r\n0\r\n\r\n");
+      "b\r\n{\"ops\":[{\"o\r\n1c\r\np\":\"set-z\",\"id\":1,\"z\":1.0}]}\r\n0\r\n\r\n");
   return all;
 }
 
@@ -60,7 +60,7 @@ TEST(MalformedTest, NoRequestBreaksTheServer) {
     config.limits.tins = 20;
     config.limits.export_pixels = 10'000;
   });
-  ASSERT_EQ(server.upload("/tins?id=t", "text/plain", ascii_grid(8, 8)).status, 201);
+  ASSERT_EQ(server.upload("/tins?id=t&crs=EPSG:32632", "text/plain", ascii_grid(8, 8)).status, 201);
   const auto good = good_requests();
   std::mt19937_64 random(seed);
   std::map<int, int> statuses;

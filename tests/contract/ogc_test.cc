@@ -59,7 +59,9 @@ TEST_F(OgcTest, TheLandingPageLeadsToContractConformanceAndData) {
   EXPECT_TRUE(contract.at("openapi").get<std::string>().starts_with("3.0"));
   EXPECT_EQ(contract.at("servers").at(0).at("url"), "http://test/tins/hill");
   EXPECT_TRUE(contract.at("paths").contains("/collections/{collection}/items"));
-  EXPECT_FALSE(contract.dump().find("{tin}") != std::string::npos) << "no path of the whole server";
+  for (const auto& [path, operations] : contract.at("paths").items()) {
+    EXPECT_EQ(path.find("{tin}"), std::string::npos) << "no path of the whole server: " << path;
+  }
   const Json classes = json(href(landing, "conformance")).at("conformsTo");
   EXPECT_NE(std::find(classes.begin(), classes.end(), "http://www.opengis.net/spec/ogcapi-features-1/1.0/conf/core"),
             classes.end());
@@ -71,7 +73,7 @@ TEST_F(OgcTest, ASlashTooManyLeadsToTheLandingPage) {
   EXPECT_EQ(answer.status, 308);
   EXPECT_EQ(answer.header("location"), "/tins/hill?a=b/");
   EXPECT_EQ(server_.get("/tins/hill/").header("location"), "/tins/hill");
-  EXPECT_EQ(server_.get("//").status, 404);
+  EXPECT_EQ(server_.get("//").header("location"), "/");
   EXPECT_EQ(server_.ask({"DELETE", "/tins/hill/"}).status, 404);
 }
 
@@ -132,7 +134,7 @@ TEST_F(OgcTest, WrongParametersAre400) {
 
 TEST_F(OgcTest, ABoxSelectsWhatTouchesIt) {
   // 100 m are about 0.00118 degrees of longitude and 0.0009 of latitude here.
-  const Json near = json(kVertices + "?bbox=-81.0001,40.649,-80.9999,40.6505");
+  const Json near = json(kVertices + "?bbox=-81.0001,40.649,-80.9999,40.6510");
   EXPECT_EQ(near.at("numberMatched"), 1);
   EXPECT_EQ(near.at("features").at(0).at("id"), 1);
   EXPECT_EQ(json(kVertices + "?bbox=-81.0001,40.649,15,-80.9,40.66,30").at("numberMatched"), 1) << "by elevation";
@@ -141,7 +143,7 @@ TEST_F(OgcTest, ABoxSelectsWhatTouchesIt) {
   EXPECT_EQ(json(kVertices + "?bbox=170,-90,-80,90").at("numberMatched"), 5) << "over the antimeridian";
   EXPECT_EQ(json(kVertices + "?bbox=-70,-90,-90,90").at("numberMatched"), 0) << "all but where it is";
   // A sliver across the middle, between all vertices: triangles and edges cross it, no vertex lies in it.
-  const std::string sliver = "?bbox=-80.9998,40.65065,-80.9994,40.65066";
+  const std::string sliver = "?bbox=-80.9998,40.6513,-80.99945,40.65131";
   EXPECT_EQ(json(kVertices + sliver).at("numberMatched"), 0);
   EXPECT_GT(json(kCollections + "/triangles/items" + sliver).at("numberMatched"), 0);
   EXPECT_GT(json(kCollections + "/edges/items" + sliver).at("numberMatched"), 0);
@@ -175,7 +177,7 @@ TEST_F(OgcTest, ABoxMayBeInAnotherCrs) {
   const std::string utm = std::string("&bbox-crs=") + kUtm, lat_lon = std::string("&bbox-crs=") + kLatLon;
   EXPECT_EQ(json(kVertices + "?bbox=500040,4500030,500060,4500050" + utm).at("features").at(0).at("id"), 5);
   EXPECT_EQ(json(kVertices + "?bbox=500000,4500000,500100,4500000" + utm).at("numberMatched"), 2) << "its sides belong to it";
-  EXPECT_EQ(json(kVertices + "?bbox=40.649,-81.0001,40.6505,-80.9999" + lat_lon).at("features").at(0).at("id"), 1);
+  EXPECT_EQ(json(kVertices + "?bbox=40.649,-81.0001,40.6510,-80.9999" + lat_lon).at("features").at(0).at("id"), 1);
   const Json both = json(kVertices + "?bbox=500040,4500030,500060,4500050" + utm + "&crs=" + kUtm + "&limit=1");
   EXPECT_EQ(coordinates(both, 0), Json::parse("[500050,4500040,20]"));
 }
@@ -282,7 +284,7 @@ TEST_F(OgcTest, BodiesThatMakeNoVertexChangeNothing) {
   refused(R"({"type":"Feature","geometry":{"type":"Point","coordinates":[1,2,3]},"properties":{"name":"x"}})", 422,
           "/properties/name");
   refused(point("-81,91,0"), 422, "/geometry/coordinates");
-  refused(point("0,0,0"), 422, "/geometry");
+  refused(point("0,0,0"), 422, "/geometry/coordinates");
   EXPECT_EQ(server_.state(), before);
 }
 

@@ -45,7 +45,10 @@ class AsyncTest : public ServedTest {
 TEST_F(AsyncTest, AnImportAndASimplificationAreFollowedToTheirEnd) {
   const std::string import = submit_import(sample_file("olinda"), "coast");
   EXPECT_EQ(served_->finished_job(import).at("status"), "successful");
-  EXPECT_EQ(served_->get(import + "/results"), served_->get("/tins/coast"));
+  Json made = served_->get(import + "/results"), shown = served_->get("/tins/coast");
+  made.erase("links");  // a job does not know how its client calls the server
+  shown.erase("links");
+  EXPECT_EQ(made, shown);
   const std::string work = submit_simplify({{"tin", "coast"}, {"tolerance", 5}, {"as", "coast-5"}});
   const Json done = served_->finished_job(work);
   EXPECT_EQ(done.at("status"), "successful");

@@ -4,6 +4,7 @@
 
 #include "server/store/sqlite_store.h"
 #include "server/app/catalogue.h"
+#include "server/gdal/crs.h"
 #include "tests/server/tiles/terrains.h"
 #include "tests/support/quantized_mesh.h"
 #include "tests/support/temp_dir.h"
@@ -49,8 +50,13 @@ TEST_F(TileCacheTest, ATileIsMadeOnceAndAgainWhereAnEditCameNear) {
   for (const TileId& id : ids) before.push_back(get(TileKind::kTerrain, id));
   for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(get(TileKind::kTerrain, ids[i]), before[i]);
   EXPECT_EQ(cache_.statistics().made, ids.size());
-  // An edit in the middle, away from the corners.
-  insert(460000, 5240000, 1100);
+  // An edit in the tile of the middle, away from the corners.
+  const auto rectangle = geographic_rectangle(ids[2]);
+  double x = (rectangle.west + rectangle.east) / 2, y = (rectangle.south + rectangle.north) / 2;
+  std::uint8_t ok = 1;
+  auto to_own = *server::gdal::CrsTransform::create("EPSG:4326", "EPSG:32632");
+  ASSERT_TRUE(to_own.transform({&x, 1}, {&y, 1}, {&ok, 1}));
+  insert(x, y, 1100);
   EXPECT_EQ(get(TileKind::kTerrain, ids[0]), before[0]);
   EXPECT_EQ(get(TileKind::kTerrain, ids[1]), before[1]);
   EXPECT_EQ(cache_.statistics().made, ids.size());
