@@ -2,6 +2,10 @@
 // only, except inside `on_workers`, when the coroutine waits. Handlers and body sources run there.
 #include "server/http/session.h"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/asio.hpp>
@@ -26,6 +30,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
+constexpr int kUnsentBytes = 128 * 1024;
 constexpr std::size_t kHeadReadBytes = 4 * 1024;
 constexpr std::size_t kBodyReadBytes = 64 * 1024;
 constexpr std::uint64_t kLingerBytes = 16ULL << 20;
@@ -67,6 +72,9 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     error_code ignored;
     socket_.assign(accepted_.ipv6 ? tcp::v6() : tcp::v4(), accepted_.descriptor, ignored);
     socket_.set_option(tcp::no_delay(true), ignored);
+    // What a slow client does not take stays unmade: else the kernel would have megabytes made for each of them,
+    // at the cost of all others. What is on its way does not count, so that far and fast clients lose nothing.
+    ::setsockopt(accepted_.descriptor, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof kUnsentBytes);
   }
 
   void start() override {

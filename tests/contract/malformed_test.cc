@@ -26,7 +26,7 @@ std::vector<std::string> good_requests() {
   std::vector<std::string> all;
   for (const char* target :
        {"/", "/tins?limit=2", "/tins/t", "/tins/t/elevation?x=1.5&y=2&voids=fill",
-        "/tins/t/elevation?x=1&y=2&crs=EPSG:4326", "/tins/t/collections/vertices/items?bbox=0,0,3,3&limit=2",
+        "/tins/t/elevation?x=1&y=2", "/tins/t/collections/vertices/items?bbox=0,0,3,3&limit=2",
         "/tins/t/collections/triangles/items", "/tins/t/export?f=geojson",
         "/tins/t/export?f=geotiff&cell-size=1&bbox=0,0,5,5", "/jobs", "/processes/simplify", "/metrics"}) {
     all.push_back(std::string("GET ") + target +
