@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "proto/formats/mesh_formats.h"
+#include "proto/formats/terrain_mesh.h"
 #include "server/api/export_grid.h"
 #include "server/api/feature_reader.h"
 #include "server/gdal/geotiff.h"
@@ -37,6 +39,14 @@ std::string suffix_of(const fs::path& file) {
 
 bool is_geotiff(const std::string& suffix) {
   return suffix == ".tif" || suffix == ".tiff";
+}
+
+/// Null when the suffix is no mesh format's.
+const proto::formats::MeshFormatEntry* mesh_format(const std::string& suffix) {
+  for (const auto& entry : proto::formats::mesh_formats()) {
+    if (entry.suffix == suffix) return &entry;
+  }
+  return nullptr;
 }
 
 bool is_geojson(const std::string& suffix) {
@@ -91,21 +101,44 @@ Result<void> write_triangles(const Terrain& terrain, const fs::path& file, Progr
   return out.close();
 }
 
-Result<void> write_as(const std::string& suffix, const Terrain& terrain, const fs::path& file,
-                      Progress& progress) {
+Result<void> write_mesh(const proto::formats::MeshFormatEntry& entry, const Terrain& terrain,
+                        const std::string& title, const fs::path& file, Progress& progress) {
+  proto::formats::MeshRequest request;
+  request.title = title;
+  auto mesh = proto::formats::TerrainMesh::create(terrain, std::move(request));
+  if (!mesh) return mesh.error();
+  const auto format = entry.make();
+  Writer out(file);
+  const auto written =
+      proto::formats::write_mesh(**mesh, *format, [&](std::string_view piece) -> Result<void> {
+        if (progress.cancelled()) return error(Code::kCancelled, "cancelled");
+        out.write(piece);
+        return {};
+      });
+  return written ? out.close() : written;
+}
+
+Result<void> write_as(const std::string& suffix, const Terrain& terrain, const std::string& title,
+                      const fs::path& file, Progress& progress) {
   if (is_geotiff(suffix)) return write_raster(terrain, file, progress);
+  if (const auto* entry = mesh_format(suffix)) return write_mesh(*entry, terrain, title, file, progress);
   return write_triangles(terrain, file, progress);
 }
 
 }  // namespace
 
 std::string output_formats() {
-  return ".tif, .geojson";
+  std::string all = ".tif, .geojson";
+  for (const auto& entry : proto::formats::mesh_formats()) {
+    const std::string suffix(entry.suffix);
+    if (mesh_format(suffix) == &entry && suffix == suffix_of("a" + suffix)) all += ", " + suffix;
+  }
+  return all;
 }
 
 Result<void> check_output(const fs::path& file) {
   const std::string suffix = suffix_of(file);
-  if (!is_geotiff(suffix) && !is_geojson(suffix))
+  if (!is_geotiff(suffix) && !is_geojson(suffix) && mesh_format(suffix) == nullptr)
     return error(Code::kUnsupported, "its suffix is none of those that are written: " + output_formats());
   const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
   if (::access(folder.c_str(), W_OK) != 0)
@@ -117,7 +150,7 @@ Result<void> write_output(const Terrain& terrain, const fs::path& file, Progress
   if (auto fine = check_output(file); !fine) return fine;
   fs::path beside = file;
   beside.replace_extension("." + std::to_string(::getpid()) + ".part" + file.extension().string());
-  auto written = write_as(suffix_of(file), terrain, beside, progress);
+  auto written = write_as(suffix_of(file), terrain, file.stem(), beside, progress);
   std::error_code failed;
   if (written && progress.cancelled()) written = error(Code::kCancelled, "cancelled");
   if (written) {

@@ -11,7 +11,7 @@
 
 namespace server::cli {
 
-/// The suffixes that are known: ".tif, .geojson".
+/// The suffixes that are known: ".tif, .geojson, .obj, ...".
 std::string output_formats();
 
 /// Whether files of this name can be written: asked before long work. Errors: kUnsupported, which names the

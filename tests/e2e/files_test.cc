@@ -78,6 +78,30 @@ TEST_F(FilesTest, TheServerComesToTheSameTriangles) {
   EXPECT_EQ(misses.largest > 0, result.at("maxError") > 0);
 }
 
+TEST_F(FilesTest, MeshesHoldTheVerticesAndTrianglesOfTheReport) {
+  const std::string input = sample_file("olinda");
+  const auto lines_with = [&](const std::string& file, const std::string& head) {
+    std::ifstream in(file);
+    std::size_t count = 0;
+    for (std::string line; std::getline(in, line);) count += line.starts_with(head) ? 1 : 0;
+    return count;
+  };
+  std::size_t vertices = 0;
+  for (const char* name : {"out.obj", "out.ply", "out.2dm"}) {
+    const Finished done =
+        tinsmith({"simplify", input, "-t", "10", "--effort", "fast", "-o", path(name), "--json"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    vertices = Json::parse(done.out).at("verticesAfter");
+  }
+  EXPECT_EQ(lines_with(path("out.obj"), "v "), vertices);
+  EXPECT_EQ(lines_with(path("out.2dm"), "ND "), vertices);
+  EXPECT_EQ(lines_with(path("out.obj"), "f "), lines_with(path("out.2dm"), "E3T "));
+  EXPECT_EQ(lines_with(path("out.ply"), "element vertex " + std::to_string(vertices)), 1U);
+  // Vertices are those of the file, so a mesh that comes home is a set of points of the same number.
+  const Finished info = tinsmith({"info", path("out.obj"), "--json"});
+  EXPECT_EQ(Json::parse(info.out).at("samples"), vertices);
+}
+
 TEST_F(FilesTest, ABudgetBelowWhatTheToleranceNeedsEndsWithThree) {
   const std::string input = sample_file("olinda");
   const Finished done = tinsmith({"simplify", input, "--tolerance", "1", "--max-vertices", "100", "--effort",
@@ -109,7 +133,7 @@ TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
   expect({input, "-o", out, "-t", "much"}, 2, "tolerance");
   expect({input, "-o", out, "-t", "1", "--effort", "most"}, 1, "--effort");
   expect({input, "-t", "1"}, 2, "--output");
-  expect({input, "-o", path("out.xyz"), "-t", "1"}, 1, ".geojson");
+  expect({input, "-o", path("out.doc"), "-t", "1"}, 1, ".geojson");
   expect({input, "-o", path("no/such/out.tif"), "-t", "1"}, 1, "No such file");
   expect({path("nowhere.tif"), "-o", out, "-t", "1"}, 1, "nowhere.tif");
   expect({path("text.txt"), "-o", out, "-t", "1"}, 1, "text.txt");
