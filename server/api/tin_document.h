@@ -6,6 +6,8 @@
 
 namespace server::api {
 
+struct Context;
+
 proto::TinDocument tin_document(const app::Tin& tin);
 
 /// 201 with Location, ETag and the document.
