@@ -172,6 +172,7 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
     return i == threads ? count() + 1 : 1 + static_cast<std::uint32_t>(part_begin(count(), i, threads)) / kFirstStride * kFirstStride;
   };
   const Territory territory{begin(thread), begin(thread + 1)};
+  if (territory.begin == territory.end) return true;  // what begins there is somebody else's
   Cavity cavity;
   TriangleSlot start = mesh_.triangle_at(VertexSlot(territory.begin));
   std::uint32_t done = 0;

@@ -86,7 +86,6 @@ bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& own
   if (!owner.owns(stop.a.vertex) || !owner.owns(stop.b.vertex) || !owner.owns(stop.c.vertex)) return false;
   start(mesh, stop);
   std::size_t count = 1;
-  bool owned = true;
   Seen* corners = corners_.data();
   Edge* edges = edges_.data();
   Rim* rim = rim_.data();
@@ -117,11 +116,13 @@ bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& own
         Int128{to.square} * from_apex + Int128{from.square} * apex_to - Int128{apex.square} * edge.cross;
     bool conflict = determinant > 0;
     if (determinant == 0) [[unlikely]] conflict = tie(mesh, p, from, to, apex);
-    owned &= !conflict || owner.owns(v);
+    // Beyond a foreign vertex somebody else may be at work. Up to here each edge looked over has two vertices that are the
+    // owner's, so what is read of the triangle beyond it changes by nobody else.
+    if (conflict && !owner.owns(v)) [[unlikely]] return false;
     count += conflict ? 1 : 0;
   }
   triangle_count_ = count;
-  return owned;
+  return true;
 }
 
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const Everywhere&);
