@@ -1,6 +1,9 @@
 // Batches: building, insertion and removal of many vertices at a time, in the order that memory likes best.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
 
 #include "tin/delaunay/bulk.h"
 #include "tin/delaunay/hilbert_sort.h"
@@ -20,6 +23,7 @@ namespace {
 constexpr std::size_t kBetweenReports = 4096;
 constexpr std::size_t kAhead = 4;    // how many operations ahead memory is asked for, per dependent load
 constexpr std::size_t kWorthAThread = 20000;  // points
+constexpr std::uint32_t kBitsPerWord = 64;
 constexpr std::size_t kTogether = 16;  // stars fetched in turns
 
 /// Reports after each 4096th operation. False when it is time to stop.
@@ -67,6 +71,51 @@ class StarFetcher {
   const Mesh& mesh_;
   std::array<Around, kTogether> around_;
 };
+
+std::vector<VertexSlot> in_slot_order(const Mesh& mesh, std::span<const VertexSlot> slots) {
+  std::vector<VertexSlot> order(slots.begin(), slots.end());
+  if (slots.size() < mesh.vertex_slots() / kBitsPerWord) {
+    std::sort(order.begin(), order.end());
+    return order;
+  }
+  std::vector<std::uint64_t> wanted(mesh.vertex_slots() / kBitsPerWord + 1);
+  for (const VertexSlot v : slots) wanted[v.value() / kBitsPerWord] |= std::uint64_t{1} << v.value() % kBitsPerWord;
+  std::size_t count = 0;
+  for (std::uint32_t word = 0; word < wanted.size(); ++word) {
+    for (std::uint64_t bits = wanted[word]; bits != 0; bits &= bits - 1) {
+      order[count++] = VertexSlot(word * kBitsPerWord + static_cast<std::uint32_t>(std::countr_zero(bits)));
+    }
+  }
+  return order;
+}
+
+/// Whether neighbours in this order are much nearer to each other than others, by samples.
+bool follows_the_ground(const Mesh& mesh, std::span<const VertexSlot> order) {
+  constexpr std::size_t kSamples = 64;
+  constexpr std::int64_t kMuch = 8;
+  if (order.size() < 2 * kSamples) return true;
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    const Point p = mesh.point(order[i]), q = mesh.point(order[j]);
+    return std::abs(std::int64_t{p.x} - q.x) + std::abs(std::int64_t{p.y} - q.y);
+  };
+  std::int64_t between_neighbours = 0, between_others = 0;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const std::size_t i = k * (order.size() - 1) / kSamples;
+    between_neighbours += distance(i, i + 1);
+    between_others += distance(i, (i + order.size() / 2) % order.size());
+  }
+  return kMuch * between_neighbours < between_others;
+}
+
+std::vector<VertexSlot> along_the_curve(const Mesh& mesh, std::span<const VertexSlot> slots) {
+  std::vector<Point> points;
+  points.reserve(slots.size());
+  for (const VertexSlot v : slots) points.push_back(mesh.point(v));
+  std::vector<VertexSlot> order;
+  order.reserve(slots.size());
+  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(slots[item.index]);
+  return order;
+}
 
 /// Stores points along the curve, equal ones once, on several threads.
 class Storing {
@@ -195,13 +244,11 @@ void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span
   }
 }
 
+/// In the order of their slots where that follows the ground, as it does in a mesh that was built or compacted; else along the
+/// curve, which takes longer to find.
 bool Triangulation::remove_many(std::span<const VertexSlot> slots, base::Progress* progress) {
-  std::vector<Point> points;
-  points.reserve(slots.size());
-  for (const VertexSlot v : slots) points.push_back(mesh().point(v));
-  std::vector<VertexSlot> order;
-  order.reserve(slots.size());
-  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(slots[item.index]);
+  std::vector<VertexSlot> order = in_slot_order(mesh(), slots);
+  if (!follows_the_ground(mesh(), order)) order = along_the_curve(mesh(), order);
   return remove_in_order(order, progress);
 }
 
@@ -217,18 +264,12 @@ bool Triangulation::remove_in_order(std::span<const VertexSlot> slots, base::Pro
 }
 
 mesh::Renumbering Triangulation::compact() {
-  std::vector<Point> points;
-  std::vector<VertexSlot> alive, order;
-  points.reserve(mesh().vertex_count());
+  std::vector<VertexSlot> alive;
   alive.reserve(mesh().vertex_count());
   for (std::uint32_t i = 1; i < mesh().vertex_slots(); ++i) {
-    if (!mesh().is_alive(VertexSlot(i))) continue;
-    alive.emplace_back(i);
-    points.push_back(mesh().point(VertexSlot(i)));
+    if (mesh().is_alive(VertexSlot(i))) alive.emplace_back(i);
   }
-  order.reserve(alive.size());
-  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(alive[item.index]);
-  mesh::Renumbering moved = base_.mutable_mesh().renumber(order);
+  mesh::Renumbering moved = base_.mutable_mesh().renumber(along_the_curve(mesh(), alive));
   hierarchy_.renumber(moved.vertices);
   grid_.rebuild(mesh());
   base_.forget_fresh();

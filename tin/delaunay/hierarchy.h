@@ -6,6 +6,9 @@
 // levels need no care when vertices go. Expected cost: a walk of O(1) triangles per level, O(log n) levels.
 #pragma once
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,11 +19,17 @@ namespace tin::delaunay {
 class Hierarchy {
  public:
   /// How many levels above the base hold a vertex at `p`.
-  static std::size_t height_of(exact::Point p);
+  static std::size_t height_of(exact::Point p) {
+    return static_cast<std::size_t>(std::countr_zero(scramble(p)) / kBitsPerLevel);
+  }
 
   /// The base vertex stored in `slot` at `p` has come; or goes, while the base may or may not have it any more.
-  void add(exact::Point p, mesh::VertexSlot slot);
-  void remove(exact::Point p);
+  void add(exact::Point p, mesh::VertexSlot slot) {
+    if (const std::size_t height = height_of(p); height > 0) [[unlikely]] add_to_levels(p, slot, height);
+  }
+  void remove(exact::Point p) {
+    if (const std::size_t height = height_of(p); height > 0) [[unlikely]] remove_from_levels(p, height);
+  }
   /// Starts anew with all vertices of `base`, whose slots follow the Hilbert curve.
   void build(const mesh::Mesh& base);
   /// The base's slots have changed.
@@ -44,6 +53,17 @@ class Hierarchy {
     bool exact;
   };
 
+  static constexpr int kBitsPerLevel = 6;
+
+  static std::uint64_t scramble(exact::Point p) {
+    std::uint64_t x = static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32 | static_cast<std::uint32_t>(p.y);
+    x = (x ^ (x >> 31)) * 0x7fb5d329728ea185ULL;
+    x = (x ^ (x >> 27)) * 0x81dadef4bc2dd44dULL;
+    return x ^ (x >> 33);
+  }
+
+  void add_to_levels(exact::Point p, mesh::VertexSlot slot, std::size_t height);
+  void remove_from_levels(exact::Point p, std::size_t height);
   /// Calls visit(k, found) for each level from the top down. Returns the base vertex found in the end, or kNone.
   template <class Visit>
   mesh::VertexSlot descend(exact::Point p, std::uint64_t& steps, const Visit& visit) const;

@@ -64,13 +64,6 @@ VertexSlot Mesh::add_vertex(exact::Point p, VertexSlot near) {
   return VertexSlot(static_cast<std::uint32_t>(points_.size() - 1));
 }
 
-void Mesh::release_vertex(VertexSlot v) {
-  TIN_DCHECK(v != kInfinite && is_alive(v));
-  --vertex_count_;
-  star_[v.value()] = kDead;
-  free_vertices_.add(v.value());
-}
-
 TriangleSlot Mesh::claim_triangle(TriangleSlot near) {
   ++triangle_count_;
   if (!free_triangles_.empty()) return TriangleSlot(free_triangles_.take_near(near.value()));
@@ -83,12 +76,6 @@ TriangleSlot Mesh::add_triangle(VertexSlot a, VertexSlot b, VertexSlot c) {
   const TriangleSlot t = claim_triangle(TriangleSlot(0));
   set_triangle(t, a, b, c);
   return t;
-}
-
-void Mesh::release_triangle(TriangleSlot t) {
-  triangles_[t.value()].vertices[0] = VertexSlot(kNone);
-  free_triangles_.add(t.value());
-  --triangle_count_;
 }
 
 void Mesh::clear_triangles() {

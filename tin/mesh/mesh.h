@@ -186,6 +186,19 @@ inline void Mesh::set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, Verte
   star_[a.value()] = star_[b.value()] = star_[c.value()] = t.value();
 }
 
+inline void Mesh::release_vertex(VertexSlot v) {
+  TIN_DCHECK(v != kInfinite && is_alive(v));
+  --vertex_count_;
+  star_[v.value()] = kDead;
+  free_vertices_.add(v.value());
+}
+
+inline void Mesh::release_triangle(TriangleSlot t) {
+  triangles_[t.value()].vertices[0] = VertexSlot(kNone);
+  free_triangles_.add(t.value());
+  --triangle_count_;
+}
+
 inline void Mesh::join(HalfEdge a, HalfEdge b) {
   triangles_[a.triangle().value()].neighbours[static_cast<std::size_t>(a.index())] = b;
   triangles_[b.triangle().value()].neighbours[static_cast<std::size_t>(b.index())] = a;

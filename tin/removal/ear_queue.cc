@@ -1,5 +1,7 @@
 #include "tin/removal/ear_queue.h"
 
+#include <algorithm>
+
 #include "tin/base/check.h"
 
 namespace tin::removal {
@@ -141,8 +143,11 @@ void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tall
   if (!use_heap_) return put(hole, entry);
   const std::size_t start = climb(star, hole, 0, entry, tally);
   if (start != hole) return put(start, entry);
-  for (std::size_t child; (child = 2 * hole + 1) < heap_.size(); hole = child) {
-    if (child + 1 < heap_.size() && comes_before(star, heap_[child + 1], heap_[child], tally)) ++child;
+  for (std::size_t child; (child = kArity * hole + 1) < heap_.size(); hole = child) {
+    const std::size_t end = std::min(child + kArity, heap_.size());
+    for (std::size_t other = child + 1; other < end; ++other) {
+      if (comes_before(star, heap_[other], heap_[child], tally)) child = other;
+    }
     put(hole, heap_[child]);
   }
   put(climb(star, hole, start, entry, tally), entry);
@@ -151,9 +156,8 @@ void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tall
 /// Moves the hole up, not above `top`, while its parent comes after `entry`.
 template <class Tally>
 std::size_t EarQueue::climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally) {
-  while (hole > top && comes_before(star, entry, heap_[(hole - 1) / 2], tally)) {
-    put(hole, heap_[(hole - 1) / 2]);
-    hole = (hole - 1) / 2;
+  for (std::size_t parent; hole > top && comes_before(star, entry, heap_[parent = (hole - 1) / kArity], tally); hole = parent) {
+    put(hole, heap_[parent]);
   }
   return hole;
 }

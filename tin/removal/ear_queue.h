@@ -51,6 +51,8 @@ class EarQueue {
     double approximate;
     std::uint32_t node;
   };
+  /// Each entry that moves writes to its node, wherever that is: a flat heap moves fewer.
+  static constexpr std::size_t kArity = 4;
   static constexpr std::uint32_t kScanLimit = 12;  // up to this degree a scan beats the heap
 
   void begin(const Star& star);

@@ -30,9 +30,9 @@ class Star {
   /// Takes the link of `v`. Requires: dimension 2.
   void gather(const mesh::Mesh& mesh, mesh::VertexSlot v);
 
-  std::uint32_t degree() const { return static_cast<std::uint32_t>(link_.size()); }
+  std::uint32_t degree() const { return degree_; }
   /// The half-edges opposite to the vertex, counter-clockwise; position i is the origin of the i-th.
-  std::span<const mesh::HalfEdge> link() const { return link_; }
+  std::span<const mesh::HalfEdge> link() const { return std::span(link_).first(degree_); }
   mesh::VertexSlot vertex(std::uint32_t i) const { return vertices_[i]; }
   /// The link vertex relative to the one to be removed. Requires: i != infinite().
   const exact::Lifted& at(std::uint32_t i) const { return at_[i]; }
@@ -58,12 +58,16 @@ class Star {
 
  private:
   void walk_around(const mesh::Mesh& mesh, mesh::VertexSlot v);
+  void enlarge();
   bool in_conflict_on_hull(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) const;
   int hull_sign(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
 
   mesh::VertexSlot removed_{mesh::kNone};
   std::size_t vertices_in_mesh_ = 0;
   std::uint32_t infinite_ = kNowhere;
+  std::uint32_t degree_ = 0;
+
+  // Of these the first degree_ are in use: they are larger than any link so far, since resizing them each time costs.
   std::vector<mesh::HalfEdge> link_;
   std::vector<mesh::HalfEdge> clockwise_;  // while walking: the part found in the other direction
   std::vector<mesh::HalfEdge> outside_;  // the other sides of the link's edges
