@@ -8,6 +8,9 @@
 
 namespace tin::delaunay {
 
+/// How many triangles a walk from a hint may cross before the hierarchy is asked.
+inline constexpr std::uint32_t kPatience = 64;
+
 /// A hint is never wrong, only far: the walk that starts from it decides. Hints are not kept up to date when triangles go: a
 /// slot used again mostly serves nearby, and one that does not is seen to be far. Cells that hold many vertices have no hint,
 /// nor have empty regions; there the hierarchy is asked. Reading is const and safe beside other readers.
