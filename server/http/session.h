@@ -29,6 +29,7 @@ struct SessionContext {
   std::atomic<std::uint64_t> requests{0};
   std::atomic<bool> draining{false};  // no new requests
   std::atomic<bool> aborted{false};   // no new calls of handlers and sources either
+  std::atomic<std::uint64_t> buffered{0};  // bytes of bodies and answers that are held; see Buffered
 };
 
 /// A connection just accepted.

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
       {"star", bench::run_star},     {"build", bench::run_build},   {"insert", bench::run_insert},
       {"locate", bench::run_locate}, {"remove", bench::run_remove}, {"simplify", bench::run_simplify},
       {"raster", bench::run_raster}, {"surface", bench::run_surface},
+      {"snapshot", bench::run_snapshot},
   };
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
