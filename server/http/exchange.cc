@@ -45,7 +45,7 @@ Response Exchange::no_room() const {
 }
 
 bool Exchange::hold_body() {
-  if (buffered_.resize(admission_.request.body.capacity())) return true;
+  if (buffered_.resize(admission_.request.body.size())) return true;
   admission_.answer = no_room();
   return false;
 }

@@ -1,9 +1,10 @@
-// A coroutine per connection, on a strand of its own: the members of a session are touched by that strand
-// only, except inside `on_workers`, when the coroutine waits. Handlers and body sources run there.
+// A coroutine per connection, which stays on the thread of its io_context: the members of a session are touched by that
+// thread only, except inside `on_workers`, when the coroutine waits. Handlers and body sources run there.
 #include "server/http/session.h"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -25,10 +26,17 @@ namespace {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
-using asio::awaitable;
 using asio::ip::tcp;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
+// One type and no other, so that nothing is looked up when an operation ends.
+using Executor = asio::io_context::executor_type;
+template <class T>
+using awaitable = asio::awaitable<T, Executor>;
+using Socket = asio::basic_stream_socket<tcp, Executor>;
+using Timer = asio::basic_waitable_timer<Clock, asio::wait_traits<Clock>, Executor>;
+
+constexpr asio::use_awaitable_t<Executor> kAwaited;
 
 constexpr int kUnsentBytes = 128 * 1024;
 constexpr std::size_t kHeadReadBytes = 4 * 1024;
@@ -54,7 +62,7 @@ awaitable<void> on_workers(asio::thread_pool& workers, Job& job) {
       asio::post(executor, std::move(resume));
     });
   };
-  co_await asio::async_initiate<const asio::use_awaitable_t<>&, void()>(initiate, asio::use_awaitable);
+  co_await asio::async_initiate<const asio::use_awaitable_t<Executor>&, void()>(initiate, kAwaited);
   if (failure) std::rethrow_exception(failure);
 }
 
@@ -66,7 +74,7 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
         options_(context.options),
         accepted_(std::move(accepted)),
         on_end_(std::move(on_end)),
-        executor_(asio::make_strand(io)),
+        executor_(io.get_executor()),
         socket_(executor_),
         deadline_(executor_),
         pause_(executor_),
@@ -227,6 +235,9 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
 
   enum class Peer { kThere, kSilent, kGone };
   Peer peer() {
+    // A reset after the end of what came in shows here only.
+    pollfd state{socket_.native_handle(), POLLIN, 0};
+    if (::poll(&state, 1, 0) < 0 || (state.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return Peer::kGone;
     char next = 0;
     const ssize_t got = ::recv(socket_.native_handle(), &next, 1, MSG_PEEK | MSG_DONTWAIT);
     if (got == 0) return Peer::kSilent;
@@ -265,7 +276,7 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     arm(time);
     error_code ec;
     const std::size_t got =
-        co_await socket_.async_read_some(in_.prepare(at_most), asio::redirect_error(asio::use_awaitable, ec));
+        co_await socket_.async_read_some(in_.prepare(at_most), asio::redirect_error(kAwaited, ec));
     disarm();
     in_.commit(got);
     co_return got;
@@ -443,7 +454,7 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
       if (ec == asio::error::would_block) {
         const Clock::time_point before = Clock::now();
         arm(time);
-        sent = co_await socket_.async_write_some(rest, asio::redirect_error(asio::use_awaitable, ec));
+        sent = co_await socket_.async_write_some(rest, asio::redirect_error(kAwaited, ec));
         disarm();
         patience.record(0, Clock::now() - before);
       }
@@ -459,7 +470,7 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     error_code ignored;
     pause_.expires_after(options_.poll_interval);
     if (context_.draining) co_return;
-    co_await pause_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    co_await pause_.async_wait(asio::redirect_error(kAwaited, ignored));
   }
 
   /// Ends the sending side and reads on for a while: closing on unread bytes would reset the connection, and
@@ -500,11 +511,11 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
   const ServerOptions& options_;
   const Accepted accepted_;
   const std::function<void()> on_end_;
-  asio::any_io_executor executor_;
-  tcp::socket socket_;
-  asio::steady_timer deadline_;
-  asio::steady_timer pause_;
-  asio::steady_timer watch_;
+  const Executor executor_;
+  Socket socket_;
+  Timer deadline_;
+  Timer pause_;
+  Timer watch_;
   beast::flat_buffer in_;   // bytes received and not used yet
   std::uint64_t turn_ = 0;  // which arm() a deadline belongs to
   bool timed_out_ = false;
