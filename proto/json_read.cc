@@ -172,8 +172,9 @@ class DocumentBuilder {
 
 namespace {
 
-/// Reads plain JSON, which is what programs send: ASCII without escapes, numbers that fit. Several times as fast as the
-/// parser that reads all JSON and says what is wrong with it; whatever is not plain is left to that one.
+/// Reads plain JSON, which is what programs send: ASCII without escapes, numbers that fit. Several times as
+/// fast as the parser that reads all JSON and says what is wrong with it; whatever is not plain is left to
+/// that one.
 class PlainParser {
  public:
   PlainParser(std::string_view text, DocumentBuilder& builder)
@@ -291,7 +292,8 @@ class PlainParser {
     if (at_ - begin > kFit) return false;
     std::int64_t count = 0;
     std::from_chars(begin, at_, count);
-    return negative ? builder_.number_integer(count) : builder_.number_unsigned(static_cast<std::uint64_t>(count));
+    return negative ? builder_.number_integer(count)
+                    : builder_.number_unsigned(static_cast<std::uint64_t>(count));
   }
 
   const char* at_;

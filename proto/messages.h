@@ -158,8 +158,8 @@ std::string tin_list_json(const TinList& list);
 /// An operation that concerned an area, by its index, and how many vertices that were.
 using AreaResult = std::pair<std::size_t, std::size_t>;
 
-/// One id per op, of the vertex inserted or found, removed, moved or set; of an op in `areas` (ascending) as many as it
-/// removed.
+/// One id per op, of the vertex inserted or found, removed, moved or set; of an op in `areas` (ascending) as
+/// many as it removed.
 std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids,
                              std::span<const AreaResult> areas = {});
 

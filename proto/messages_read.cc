@@ -179,7 +179,8 @@ Result<EditOp> read_remove_within(Value value, std::size_t most_positions) {
   if (!member) return std::move(member).error();
   auto polygon = read_positions(*member, most_positions);
   if (!polygon) return std::move(polygon).error();
-  if (polygon->size() < 3) return member->error(Code::kInvalidValue, "a polygon has at least three positions");
+  if (polygon->size() < 3)
+    return member->error(Code::kInvalidValue, "a polygon has at least three positions");
   return EditOp(RemoveWithinOp{std::move(*polygon)});
 }
 

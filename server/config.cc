@@ -251,8 +251,8 @@ Result<Config> config_of(const json& document) {
                    "at most page_size_max, which is " + std::to_string(config.limits.page_size_max));
   }
   if (config.http.buffered_bytes < config.limits.body_bytes_memory) {
-    return invalid("/http/buffered_bytes",
-                   "at least limits.body_bytes_memory, which is " + std::to_string(config.limits.body_bytes_memory));
+    return invalid("/http/buffered_bytes", "at least limits.body_bytes_memory, which is " +
+                                               std::to_string(config.limits.body_bytes_memory));
   }
   return config;
 }

@@ -85,7 +85,8 @@ struct HttpConfig {
   std::int64_t header_fields = 100;
   std::int64_t target_bytes = 8 * 1024;
   std::int64_t header_seconds = 10;
-  std::int64_t buffered_bytes = 256 << 20;  // of bodies in memory and of answers that wait for clients, in all
+  std::int64_t buffered_bytes =
+      256 << 20;  // of bodies in memory and of answers that wait for clients, in all
   std::int64_t body_bytes_per_second = 1024;  // the least, either way
   std::int64_t stall_seconds = 60;            // without any progress of a body
   std::int64_t compress_from_bytes = 1024;    // of an answer in text, for clients that accept it; 0: never

@@ -16,7 +16,8 @@ Result<EditPlace> edit_place(Context& context, const Request& request) {
   return EditPlace{std::move(slot), *std::move(key)};
 }
 
-Result<void> room_for_edit(const Context& context, const app::Tin& tin, std::span<const app::WorldEdit> edits) {
+Result<void> room_for_edit(const Context& context, const app::Tin& tin,
+                           std::span<const app::WorldEdit> edits) {
   const auto inserted = std::count_if(edits.begin(), edits.end(), [](const app::WorldEdit& one) {
     return std::holds_alternative<app::InsertAt>(one);
   });

@@ -24,8 +24,9 @@ struct EditPlace {
 /// Errors: kTooMany (edits at once), kMalformed (the key).
 Result<EditPlace> edit_place(Context& context, const Request& request);
 
-/// Whether there is memory for the vertices that the edits insert, and for the copy that the edit makes where somebody holds a version.
-/// Errors: kTooMany.
-Result<void> room_for_edit(const Context& context, const app::Tin& tin, std::span<const app::WorldEdit> edits);
+/// Whether there is memory for the vertices that the edits insert, and for the copy that the edit makes where
+/// somebody holds a version. Errors: kTooMany.
+Result<void> room_for_edit(const Context& context, const app::Tin& tin,
+                           std::span<const app::WorldEdit> edits);
 
 }  // namespace server::api

@@ -38,7 +38,8 @@ Result<std::vector<app::WorldEdit>> to_world_edits(const proto::EditRequest& mes
       edits.emplace_back(tin::terrain::Remove{std::get<proto::RemoveOp>(message.ops[i]).id});
     }
     if (!at)
-      return error(Code::kInvalidValue, "The position cannot be converted to the TIN's CRS.", std::move(where));
+      return error(Code::kInvalidValue, "The position cannot be converted to the TIN's CRS.",
+                   std::move(where));
   }
   return edits;
 }

@@ -128,10 +128,11 @@ void look_up_block(const Terrain& terrain, ElevationQuery& query, std::span<cons
   }
 }
 
-/// Elevations at positions in the TIN's CRS, those with `ok`. Many are taken along the Hilbert curve, as the terrain is
-/// stored: each block of them stays in the caches.
-std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const Manner& manner, std::span<const double> x,
-                                               std::span<const double> y, std::span<const std::uint8_t> ok) {
+/// Elevations at positions in the TIN's CRS, those with `ok`. Many are taken along the Hilbert curve, as the
+/// terrain is stored: each block of them stays in the caches.
+std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const Manner& manner,
+                                               std::span<const double> x, std::span<const double> y,
+                                               std::span<const std::uint8_t> ok) {
   std::vector<tin::exact::Point> points;
   std::vector<std::uint32_t> indices;
   points.reserve(x.size());
@@ -160,8 +161,8 @@ std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const Man
   std::vector<tin::delaunay::Location> locations;
   for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
     const std::size_t size = std::min(kAtOnce, points.size() - begin);
-    look_up_block(terrain, query, std::span(points).subspan(begin, size), std::span(indices).subspan(begin, size),
-                  locations, z);
+    look_up_block(terrain, query, std::span(points).subspan(begin, size),
+                  std::span(indices).subspan(begin, size), locations, z);
   }
   return z;
 }

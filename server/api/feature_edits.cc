@@ -45,13 +45,17 @@ tin::base::Error in_geometry(tin::base::Error problem) {
   return problem;
 }
 
-/// The tag of the vertex as the edit left it, whatever became of it since; none when it is gone, or that is not known.
+/// The tag of the vertex as the edit left it, whatever became of it since; none when it is gone, or that is
+/// not known.
 void add_tag(Response& response, const app::Tin& tin, std::uint64_t revision, VertexId id) {
   const auto vertex = tin.vertex_after(revision, id);
-  if (vertex) response.headers.emplace_back("ETag", feature_tag(tin, vertex_feature(*vertex, tin.summary().frame), Request{}));
+  if (vertex)
+    response.headers.emplace_back("ETag",
+                                  feature_tag(tin, vertex_feature(*vertex, tin.summary().frame), Request{}));
 }
 
-Response created(const Context& context, const Request& request, const app::Tin& tin, const app::Edited& edited) {
+Response created(const Context& context, const Request& request, const app::Tin& tin,
+                 const app::Edited& edited) {
   Response response{201, {}, std::string()};
   const std::string path = request.path + "/" + std::to_string(edited.ids[0].value());
   response.headers.emplace_back("Location", base_url(context.config, request) + path);
@@ -96,8 +100,8 @@ Result<Response> create(Context& context, const Request& request) {
 /// The edits that bring a vertex into the state that a body asks for.
 using EditsOf = std::function<Result<std::vector<app::WorldEdit>>(const app::Tin& tin, VertexId id)>;
 
-/// Checks If-Match against the vertex as it is, and edits that very revision. A key that was used before is asked for after
-/// the vertex was looked at: whatever comes to both is there by then, or is met by the edit.
+/// Checks If-Match against the vertex as it is, and edits that very revision. A key that was used before is
+/// asked for after the vertex was looked at: whatever comes to both is there by then, or is met by the edit.
 Result<Response> change(Context& context, const Request& request, const EditsOf& edits_of) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();

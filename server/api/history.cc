@@ -162,7 +162,8 @@ Result<Response> revert(Context& context, const Request& request) {
   if (!place) return place.error();
   const auto expected = expected_revisions(**tin, request.header("if-match"));
   if (!expected) return expected.error();
-  const auto reverted = (*tin)->revert(*revision, place->terms(*expected, *remark), &context.catalogue.memory());
+  const auto reverted =
+      (*tin)->revert(*revision, place->terms(*expected, *remark), &context.catalogue.memory());
   if (!reverted) return reverted.error();
   return tagged(proto::edit_result_json(reverted->revision, reverted->ids), **tin, reverted->revision,
                 request);

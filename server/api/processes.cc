@@ -48,13 +48,15 @@ jobs::JobQueue::Work in_document(jobs::JobQueue::Work work) {
   };
 }
 
-/// Waits for the job as long as the client does, at most for the time that the configuration says. A job whose client
-/// is gone is dismissed: nobody knows its id. Nothing: it has not finished.
-std::optional<jobs::JobStatus> finished_in_time(Context& context, const jobs::JobId& job, const Request& request) {
+/// Waits for the job as long as the client does, at most for the time that the configuration says. A job
+/// whose client is gone is dismissed: nobody knows its id. Nothing: it has not finished.
+std::optional<jobs::JobStatus> finished_in_time(Context& context, const jobs::JobId& job,
+                                                const Request& request) {
   constexpr std::chrono::milliseconds kAskEvery{200};
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(context.config.jobs.sync_seconds);
   while (std::chrono::steady_clock::now() < end) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     const auto status = context.jobs.wait(job, std::min(left, kAskEvery));
     if (!status || status->finished_ms) return status;
     if (!request.is_aborted()) continue;

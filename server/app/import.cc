@@ -51,13 +51,15 @@ Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplic
   return made;
 }
 
-/// What was read and the terrain that becomes of it. A raster that is simplified at once is never a terrain as a whole:
-/// working on it took 70 bytes per sample where most, and more than anybody wants, became vertices.
+/// What was read and the terrain that becomes of it. A raster that is simplified at once is never a terrain
+/// as a whole: working on it took 70 bytes per sample where most, and more than anybody wants, became
+/// vertices.
 std::uint64_t bytes_to_build(const gdal::Import& import) {
   constexpr std::uint64_t kBytesPerSample = 80;
   const auto samples = static_cast<std::uint64_t>(import.heights.size());
   if (import.placements.empty()) return samples * kBytesPerSample;
-  return import.placements.size() * (sizeof(tin::terrain::Placement) + kBytesPerVertex) + samples * sizeof(double);
+  return import.placements.size() * (sizeof(tin::terrain::Placement) + kBytesPerVertex) +
+         samples * sizeof(double);
 }
 
 Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, Progress& progress) {

@@ -95,8 +95,8 @@ class Tin {
   Version version() const;
   Summary summary() const;
 
-  /// What the present terrain takes, those of versions that are out still, and the source while somebody has it in
-  /// hand; as far as known without waiting.
+  /// What the present terrain takes, those of versions that are out still, and the source while somebody has
+  /// it in hand; as far as known without waiting.
   std::uint64_t held_bytes() const;
   /// What the next edit will copy because a version is out.
   std::uint64_t copy_bytes() const;
@@ -123,10 +123,10 @@ class Tin {
   /// kConflict (later ones changed what it changed), and as edit().
   /// What it takes meanwhile is taken from `memory`, if that is given.
   tin::base::Result<Edited> revert(std::uint64_t revision, const Terms& terms,
-                                  MemoryBudget* memory = nullptr);
+                                   MemoryBudget* memory = nullptr);
 
-  /// What was answered under the key, if anything was. Errors: kInvalidValue (the key came with another request
-  /// before), kStorage.
+  /// What was answered under the key, if anything was. Errors: kInvalidValue (the key came with another
+  /// request before), kStorage.
   tin::base::Result<std::optional<Edited>> answered(const RequestKey& key) const;
 
   /// A vertex as a revision left it: nothing when it was gone then, or when that is not known any more.
@@ -201,7 +201,7 @@ class Tin {
 
   tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning, const Terms& terms);
   tin::base::Result<Edited> replay_aside(const tin::terrain::Change& change, const Terms& terms,
-                                        MemoryBudget* memory);
+                                         MemoryBudget* memory);
   tin::base::Error explain_conflict(std::uint64_t revision, const tin::terrain::Change& inverse,
                                     const tin::base::Error& conflict);
 

@@ -1,5 +1,5 @@
-// What a TIN takes of the memory: its present terrain, those before it that somebody still reads, and its source while a
-// simplification works with it.
+// What a TIN takes of the memory: its present terrain, those before it that somebody still reads, and its
+// source while a simplification works with it.
 #include "server/app/memory.h"
 #include "server/app/tin.h"
 

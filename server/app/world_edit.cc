@@ -80,7 +80,8 @@ class Sequence {
       return applied.error();
     }
     all_.ids.insert(all_.ids.end(), applied->ids.begin(), applied->ids.end());
-    all_.change.steps.insert(all_.change.steps.end(), applied->change.steps.begin(), applied->change.steps.end());
+    all_.change.steps.insert(all_.change.steps.end(), applied->change.steps.begin(),
+                             applied->change.steps.end());
     return {};
   }
   void take_back() { terrain_.undo(all_); }

@@ -46,10 +46,13 @@ struct LatticeEdits {
 /// An edit of an area, by its index, and how many vertices it removed.
 using AreaResult = std::pair<std::size_t, std::size_t>;
 
-/// Applies all edits or none; `areas` gets one entry for each of an area. As many ids as edits, but for these.
-/// Errors: as Terrain::apply; kTooLarge when areas hold more than `most_within` vertices. Cost: for each area O(n).
-tin::base::Result<tin::terrain::Terrain::Applied> apply(tin::terrain::Terrain& terrain, const LatticeEdits& edits,
-                                                        tin::terrain::Duplicates duplicates, std::size_t most_within,
+/// Applies all edits or none; `areas` gets one entry for each of an area. As many ids as edits, but for
+/// these. Errors: as Terrain::apply; kTooLarge when areas hold more than `most_within` vertices. Cost: for
+/// each area O(n).
+tin::base::Result<tin::terrain::Terrain::Applied> apply(tin::terrain::Terrain& terrain,
+                                                        const LatticeEdits& edits,
+                                                        tin::terrain::Duplicates duplicates,
+                                                        std::size_t most_within,
                                                         std::vector<AreaResult>& areas);
 
 /// What becomes of a TIN's frame when its first vertices arrive: fitted to them with these lattice steps (0:

@@ -46,6 +46,7 @@ Response Exchange::no_room() const {
 
 bool Exchange::hold_body() {
   if (buffered_.resize(admission_.request.body.size())) return true;
+  forget_request_body();
   admission_.answer = no_room();
   return false;
 }
@@ -97,6 +98,7 @@ Answer Exchange::reply(Response response) {
 }
 
 void Exchange::finish(const Answer& answer, bool whole) {
+  buffered_.resize(0);
   if (!shared_.observer.access) return;
   access_.status = answer.status;
   access_.cut = !whole;

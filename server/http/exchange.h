@@ -35,7 +35,8 @@ class Exchange {
   /// Makes an answer without a handler.
   Answer reply(Response response);
 
-  /// Counts what there is of the request's body as held. False: there is no room, and the admission's answer says so.
+  /// Counts what there is of the request's body as held. False: there is no room, and the admission's answer
+  /// says so.
   bool hold_body();
 
   /// Whom the handler may ask whether somebody waits for it still.

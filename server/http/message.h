@@ -31,8 +31,8 @@ std::optional<Method> method_named(std::string_view name);
 /// Pairs of name and value, in the order in which they were sent.
 using NamedValues = std::vector<std::pair<std::string, std::string>>;
 
-/// Whether anybody still waits for an answer: not when the client has closed its side of the connection, or when the
-/// server will not wait any longer. Thread-safe.
+/// Whether anybody still waits for an answer: not when the client has closed its side of the connection, or
+/// when the server will not wait any longer. Thread-safe.
 class Attention {
  public:
   bool lost() const { return lost_.load(std::memory_order_relaxed); }
@@ -45,7 +45,8 @@ class Attention {
   /// Work that is cancelled when nobody waits for it any more, for as long as this lives.
   class Work {
    public:
-    Work(std::shared_ptr<Attention> attention, tin::base::Progress& progress) : attention_(std::move(attention)) {
+    Work(std::shared_ptr<Attention> attention, tin::base::Progress& progress)
+        : attention_(std::move(attention)) {
       if (attention_) attention_->watch(&progress);
     }
     Work(const Work&) = delete;

@@ -1,5 +1,6 @@
-// A coroutine per connection, which stays on the thread of its io_context: the members of a session are touched by that
-// thread only, except inside `on_workers`, when the coroutine waits. Handlers and body sources run there.
+// A coroutine per connection, which stays on the thread of its io_context: the members of a session are
+// touched by that thread only, except inside `on_workers`, when the coroutine waits. Handlers and body
+// sources run there.
 #include "server/http/session.h"
 
 #include <netinet/in.h>
@@ -205,7 +206,8 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     co_return co_await deliver(exchange, *answer);
   }
 
-  /// Notes when the client goes while a handler runs. A client that sends the next request already is not watched further.
+  /// Notes when the client goes while a handler runs. A client that sends the next request already is not
+  /// watched further.
   void watch_client(bool knows_interim_answers) {
     socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this(), attention = attention_,
                                                 knows_interim_answers](error_code ec) {
@@ -217,8 +219,8 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     });
   }
 
-  /// A client that sends no more may be gone, or wait for its answer. An interim answer tells: nobody takes it when nobody
-  /// is there, and the connection is reset. Asked once, when the handler takes its time.
+  /// A client that sends no more may be gone, or wait for its answer. An interim answer tells: nobody takes
+  /// it when nobody is there, and the connection is reset. Asked once, when the handler takes its time.
   void ask_whether_there(Clock::duration after, std::shared_ptr<Attention> attention, bool asked = false) {
     watch_.expires_after(after);
     watch_.async_wait([self = shared_from_this(), attention = std::move(attention), asked](error_code ec) {
@@ -335,15 +337,15 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
       transfer = co_await transfer_body(exchange, parser, patience);
     } catch (const std::system_error& e) {
       problem = e.what();
-      if (e.code() == std::errc::no_space_on_device || e.code().value() == EDQUOT) code = tin::base::Code::kNoSpace;
+      if (e.code() == std::errc::no_space_on_device || e.code().value() == EDQUOT)
+        code = tin::base::Code::kNoSpace;
     }
     const ErrorPages& pages = context_.pages;
     if (!problem.empty()) {
       report(admission.request.id, "upload: " + problem);
-      admission.answer =
-          pages.error(tin::base::error(code, code == tin::base::Code::kNoSpace
-                                                 ? "there is no room on the disk for the upload"
-                                                 : "the upload could not be stored"));
+      admission.answer = pages.error(tin::base::error(
+          code, code == tin::base::Code::kNoSpace ? "there is no room on the disk for the upload"
+                                                  : "the upload could not be stored"));
     } else if (transfer == Transfer::kTimeout) {
       admission.answer = pages.status(408, "the request body came too slowly");
     } else if (transfer == Transfer::kTooLarge) {

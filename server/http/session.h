@@ -56,7 +56,8 @@ class Session {
   virtual void abort() = 0;
 };
 
-/// Makes a session on an io_context that one thread runs; it keeps itself alive from start() until `on_end`, its last call.
+/// Makes a session on an io_context that one thread runs; it keeps itself alive from start() until `on_end`,
+/// its last call.
 std::shared_ptr<Session> make_session(boost::asio::io_context& io, SessionContext& context, Accepted accepted,
                                       std::function<void()> on_end);
 

@@ -1,5 +1,5 @@
-// tinsmith-bench snapshot: what it costs to give readers a terrain of their own, by copying it or by pages that are copied
-// when they are written.
+// tinsmith-bench snapshot: what it costs to give readers a terrain of their own, by copying it or by pages
+// that are copied when they are written.
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -42,9 +42,9 @@ class Paged {
     while ((sizeof(T) << (shift_ + 1)) <= page_bytes) ++shift_;
     mask_ = (std::size_t{1} << shift_) - 1;
     for (std::size_t at = 0; at < items.size(); at += mask_ + 1) {
-      pages_.push_back(std::make_shared<std::vector<T>>(items.begin() + static_cast<std::ptrdiff_t>(at),
-                                                        items.begin() + static_cast<std::ptrdiff_t>(
-                                                                            std::min(items.size(), at + mask_ + 1))));
+      pages_.push_back(std::make_shared<std::vector<T>>(
+          items.begin() + static_cast<std::ptrdiff_t>(at),
+          items.begin() + static_cast<std::ptrdiff_t>(std::min(items.size(), at + mask_ + 1))));
       table_.push_back(pages_.back()->data());
     }
   }
@@ -65,10 +65,11 @@ template <class Triangles, class Points>
 std::uint32_t walk(const Triangles& triangles, const Points& points, Point goal, std::uint32_t t) {
   for (;;) {
     const Triangle& here = triangles[t];
-    if (here.vertices[0].value() == 0 || here.vertices[1].value() == 0 || here.vertices[2].value() == 0) return t;
+    if (here.vertices[0].value() == 0 || here.vertices[1].value() == 0 || here.vertices[2].value() == 0)
+      return t;
     const Point a = points[here.vertices[0].value()], b = points[here.vertices[1].value()],
                 c = points[here.vertices[2].value()];
-    const int out = tin::exact::orientation(b, c, goal) < 0 ? 0
+    const int out = tin::exact::orientation(b, c, goal) < 0   ? 0
                     : tin::exact::orientation(c, a, goal) < 0 ? 1
                     : tin::exact::orientation(a, b, goal) < 0 ? 2
                                                               : -1;
@@ -106,8 +107,9 @@ void measure_pages(const Terrain& terrain, std::size_t page_bytes, std::mt19937_
     const Mesh &old = before.mesh(), &now = edited.mesh();
     std::set<std::size_t> of_triangles, of_points, of_stars, of_heights;
     for (std::uint32_t t = 0; t < now.triangle_slots(); ++t) {
-      const bool same = t < old.triangle_slots() && std::memcmp(&old.triangle(TriangleSlot(t)), &now.triangle(TriangleSlot(t)),
-                                                                sizeof(Triangle)) == 0;
+      const bool same =
+          t < old.triangle_slots() &&
+          std::memcmp(&old.triangle(TriangleSlot(t)), &now.triangle(TriangleSlot(t)), sizeof(Triangle)) == 0;
       if (!same) of_triangles.insert(t * sizeof(Triangle) / page_bytes);
     }
     for (std::uint32_t v = 1; v < now.vertex_slots(); ++v) {
@@ -119,7 +121,8 @@ void measure_pages(const Terrain& terrain, std::size_t page_bytes, std::mt19937_
         of_stars.insert(v * sizeof(std::uint32_t) / page_bytes);
     }
     // And one for the ids.
-    pages += static_cast<double>(of_triangles.size() + of_points.size() + of_stars.size() + of_heights.size() + 1);
+    pages +=
+        static_cast<double>(of_triangles.size() + of_points.size() + of_stars.size() + of_heights.size() + 1);
   }
   JsonLine("snapshot")
       .add("what", "pages that an insertion writes")
@@ -151,7 +154,8 @@ int run_snapshot(std::span<const std::string> arguments) {
   const Mesh& mesh = terrain.mesh();
   std::vector<Triangle> triangles;
   std::vector<Point> points(1);
-  for (std::uint32_t t = 0; t < mesh.triangle_slots(); ++t) triangles.push_back(mesh.triangle(TriangleSlot(t)));
+  for (std::uint32_t t = 0; t < mesh.triangle_slots(); ++t)
+    triangles.push_back(mesh.triangle(TriangleSlot(t)));
   for (std::uint32_t v = 1; v < mesh.vertex_slots(); ++v) points.push_back(mesh.point(VertexSlot(v)));
   std::vector<Point> goals;
   std::vector<std::uint32_t> starts;

@@ -9,7 +9,8 @@
 namespace tests::contract {
 namespace {
 
-constexpr const char* kGrid = R"({"id":"t","vertices":[[0,0,1],[1,0,2],[2,0,3],[0,1,4],[1,1,5],[2,1,6],[0,2,7],[1,2,8],[2,2,9]]})";
+constexpr const char* kGrid =
+    R"({"id":"t","vertices":[[0,0,1],[1,0,2],[2,0,3],[0,1,4],[1,1,5],[2,1,6],[0,2,7],[1,2,8],[2,2,9]]})";
 const std::string kItems = "/tins/t/collections/vertices/items";
 
 std::string point(const std::string& at) {
@@ -25,7 +26,8 @@ std::vector<Ask> edits() {
   return {{"POST", "/tins/t/edits", "application/json", R"({"ops":[{"op":"set-z","id":1,"z":50}]})", ""},
           {"POST", kItems, "application/geo+json", point("0.5,0.5,3"), ""},
           {"PUT", kItems + "/2", "application/geo+json", point("1.25,0,7"), "If-Match: *\r\n"},
-          {"PATCH", kItems + "/3", "application/merge-patch+json", R"({"properties":{"z":21}})", "If-Match: *\r\n"},
+          {"PATCH", kItems + "/3", "application/merge-patch+json", R"({"properties":{"z":21}})",
+           "If-Match: *\r\n"},
           {"DELETE", kItems + "/4", "", "", "If-Match: *\r\n"},
           {"POST", "/tins/t/revisions/2/revert", "", "", ""}};
 }
@@ -49,11 +51,14 @@ TEST(EditMannersTest, AKeyHasOneEffectAndOneAnswerWhateverTheResource) {
   }
 }
 
-/// A client that repeats itself must not learn a tag of a state that it never saw: it would overwrite what others did.
+/// A client that repeats itself must not learn a tag of a state that it never saw: it would overwrite what
+/// others did.
 TEST(EditMannersTest, TheTagThatIsRepeatedIsThatOfTheEditThen) {
   TestServer server;
   ASSERT_EQ(server.post_json("/tins", kGrid).status, 201);
-  const auto create = [&] { return server.ask({"POST", kItems, "application/geo+json", point("0.5,0.5,3"), key("a")}); };
+  const auto create = [&] {
+    return server.ask({"POST", kItems, "application/geo+json", point("0.5,0.5,3"), key("a")});
+  };
   const RawAnswer made = create();
   ASSERT_EQ(made.status, 201);
   const std::string vertex = kItems + "/10";
@@ -109,14 +114,16 @@ TEST(EditMannersTest, WhatGrowsNeedsMemoryAndWhatDoesNotGoesOn) {
   settled();
   const std::string state = server.state();
   EXPECT_EQ(server.ask({"POST", kItems, "application/json", point("0.5,0.75,3"), ""}).status, 429);
-  EXPECT_EQ(server.post_json("/tins/t/edits", R"({"ops":[{"op":"insert","x":1.5,"y":1.5,"z":1}]})").status, 429);
+  EXPECT_EQ(server.post_json("/tins/t/edits", R"({"ops":[{"op":"insert","x":1.5,"y":1.5,"z":1}]})").status,
+            429);
   EXPECT_EQ(server.state(), state);
   EXPECT_EQ(server.ask(edits()[3]).status, 204);
   EXPECT_EQ(server.ask(edits()[4]).status, 204);
   settled();
   EXPECT_EQ(server.ask({"POST", kItems, "application/json", point("0.5,0.75,3"), ""}).status, 201);
   settled();
-  EXPECT_EQ(server.ask({"POST", "/tins/t/revisions/4/revert"}).status, 429) << "the removal's undo brings a vertex";
+  EXPECT_EQ(server.ask({"POST", "/tins/t/revisions/4/revert"}).status, 429)
+      << "the removal's undo brings a vertex";
 }
 
 TEST(RemoveWithinTest, RemovesWhatStandsInThePolygonWhenItsTurnComes) {
@@ -129,8 +136,9 @@ TEST(RemoveWithinTest, RemovesWhatStandsInThePolygonWhenItsTurnComes) {
       R"({"op":"remove-within","polygon":[[7,7],[8,7],[8,8]]},{"op":"remove","id":11}]})";
   const RawAnswer answer = server.post_json("/tins/t/edits", body, key("area"));
   ASSERT_EQ(answer.status, 200) << answer.body;
-  EXPECT_EQ(Json::parse(answer.body).at("results"),
-            Json::parse(R"([{"id":9},{"id":10},{"removed":[1,2,4,5,10]},{"id":11},{"removed":[]},{"id":11}])"));
+  EXPECT_EQ(
+      Json::parse(answer.body).at("results"),
+      Json::parse(R"([{"id":9},{"id":10},{"removed":[1,2,4,5,10]},{"id":11},{"removed":[]},{"id":11}])"));
   EXPECT_EQ(server.tin("t").at("vertexCount"), 5);
   EXPECT_EQ(server.post_json("/tins/t/edits", body, key("area")).body, answer.body);
   EXPECT_EQ(server.ask({"POST", "/tins/t/revisions/2/revert"}).status, 200);
@@ -140,7 +148,8 @@ TEST(RemoveWithinTest, RemovesWhatStandsInThePolygonWhenItsTurnComes) {
 TEST(RemoveWithinTest, AnErrorNamesItsOperationAndTakesAllBack) {
   TestServer server;
   ASSERT_EQ(server.post_json("/tins", kGrid).status, 201);
-  const std::string state = server.state(), all = R"({"op":"remove-within","polygon":[[0,0],[9,0],[9,9],[0,9]]})";
+  const std::string state = server.state(),
+                    all = R"({"op":"remove-within","polygon":[[0,0],[9,0],[9,9],[0,9]]})";
   const auto where = [&](const std::string& ops) {
     const RawAnswer answer = server.post_json("/tins/t/edits", R"({"ops":[)" + ops + "]}");
     EXPECT_EQ(answer.status, 422) << answer.body;

@@ -79,8 +79,9 @@ TEST_F(ImportsTest, AnUploadWhoseClientLeavesIsGivenUp) {
   };
   {
     support::RawClient client(server_.port());
-    ASSERT_TRUE(client.send("POST /tins?id=t HTTP/1.1\r\nHost: t\r\nContent-Type: text/plain\r\nContent-Length: " +
-                            std::to_string(grid.size()) + "\r\n\r\n" + grid));
+    ASSERT_TRUE(
+        client.send("POST /tins?id=t HTTP/1.1\r\nHost: t\r\nContent-Type: text/plain\r\nContent-Length: " +
+                    std::to_string(grid.size()) + "\r\n\r\n" + grid));
     ASSERT_TRUE(uploads(1));
   }
   EXPECT_TRUE(uploads(0));

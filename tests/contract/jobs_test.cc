@@ -138,9 +138,12 @@ TEST_F(JobsTest, AJobThatAClientWaitsForEndsWhenTheClientGoes) {
   const Json occupying = newest();
   {
     support::RawClient client(server_.port());
-    client.send("POST /processes/simplify/execution HTTP/1.1\r\nHost: t\r\nContent-Type: application/json\r\n"
-                "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
-    for (int i = 0; i < 500 && newest() == occupying; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    client.send(
+        "POST /processes/simplify/execution HTTP/1.1\r\nHost: t\r\nContent-Type: application/json\r\n"
+        "Content-Length: " +
+        std::to_string(body.size()) + "\r\n\r\n" + body);
+    for (int i = 0; i < 500 && newest() == occupying; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_EQ(newest().at("status"), "accepted");
   }
   for (int i = 0; i < 500 && newest().at("status") == "accepted"; ++i)

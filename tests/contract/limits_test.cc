@@ -310,7 +310,8 @@ TEST(LimitsTest, UploadsAndExportsAtOnce) {
   expect_places(server, &server::api::Context::uploads, [&] {
     return server.upload("/tins?id=t" + std::to_string(++count), "text/plain", ascii_grid(3, 3)).status;
   });
-  expect_places(server, &server::api::Context::exports, [&] { return server.get("/tins/t1/export?f=geotiff").status; });
+  expect_places(server, &server::api::Context::exports,
+                [&] { return server.get("/tins/t1/export?f=geotiff").status; });
   EXPECT_EQ(server.leftovers(), std::set<std::string>{});
 }
 
@@ -319,7 +320,8 @@ TEST(LimitsTest, RequestsThatWaitForTheirJob) {
   TestServer server([](server::Config& config) { config.jobs.sync_waiting = 2; });
   ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(4) + "}").status, 201);
   const auto simplify = [&] {
-    return server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","tolerance":1}})").status;
+    return server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","tolerance":1}})")
+        .status;
   };
   const auto one = server.take_place(&server::api::Context::waiting);
   EXPECT_EQ(simplify(), 200);

@@ -1,5 +1,5 @@
-// A disk that is really full: a file system of a few megabytes. Where it cannot be mounted, the failing disk of
-// faulty_disk.h has to do.
+// A disk that is really full: a file system of a few megabytes. Where it cannot be mounted, the failing disk
+// of faulty_disk.h has to do.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
@@ -56,7 +56,8 @@ class FullDiskTest : public testing::Test {
     for (int y = 0; y < 20; ++y) {
       for (int x = 0; x < 20; ++x) vertices.push_back({x, y, x + y});
     }
-    ASSERT_EQ(served_->http().post_json("/tins", Json{{"id", "t"}, {"vertices", vertices}}.dump()).status, 201);
+    ASSERT_EQ(served_->http().post_json("/tins", Json{{"id", "t"}, {"vertices", vertices}}.dump()).status,
+              201);
     remember();
   }
   void TearDown() override { served_.reset(); }
@@ -64,7 +65,8 @@ class FullDiskTest : public testing::Test {
   support::RawAnswer insert(int count) {
     Json ops = Json::array();
     for (int i = 0; i < count; ++i, ++inserted_)
-      ops.push_back({{"op", "insert"}, {"x", 0.001 * (inserted_ % 19'000)}, {"y", 0.4 + inserted_ / 19'000}, {"z", 1}});
+      ops.push_back(
+          {{"op", "insert"}, {"x", 0.001 * (inserted_ % 19'000)}, {"y", 0.4 + inserted_ / 19'000}, {"z", 1}});
     return served_->http().post_json("/tins/t/edits", Json{{"ops", ops}}.dump());
   }
   void remember() {
@@ -136,7 +138,8 @@ TEST_F(FullDiskTest, FilesThatDoNotFitGet507AndLeaveNothing) {
   EXPECT_EQ(upload.status, 507) << upload.body;
   const auto raster = served_->http().get("/tins/t/export?f=geotiff&cell-size=0.01");
   EXPECT_EQ(raster.status, 507) << raster.body.substr(0, 300);
-  for (int i = 0; i < 100 && disk_.room() < room; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  for (int i = 0; i < 100 && disk_.room() < room; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_GE(disk_.room() + 65'536, room);
   disk_.free();
   EXPECT_EQ(served_->http().post("/tins", "text/csv", points).status, 201);

@@ -136,9 +136,38 @@ TEST(JsonReadTest, ErrorsDoNotRepeatHugeNames) {
 
 /// Texts of these pieces are JSON, or nearly, often enough.
 std::string scrambled(support::Random& random) {
-  static constexpr std::string_view kPieces[] = {
-      "[", "]", "{", "}", ",", ":", "\"a\"", "\"b\"", "\"\\u00e9\"", "\"\xc3\xa9\"", "0", "7", "-", "1.5", ".", "e", "E+2", "00",
-      "-0", "18446744073709551616", "123456789012345678", "1e999", "1e-999", "true", "false", "null", "nul", " ", "\n", "\t", "\"", "\x01"};
+  static constexpr std::string_view kPieces[] = {"[",
+                                                 "]",
+                                                 "{",
+                                                 "}",
+                                                 ",",
+                                                 ":",
+                                                 "\"a\"",
+                                                 "\"b\"",
+                                                 "\"\\u00e9\"",
+                                                 "\"\xc3\xa9\"",
+                                                 "0",
+                                                 "7",
+                                                 "-",
+                                                 "1.5",
+                                                 ".",
+                                                 "e",
+                                                 "E+2",
+                                                 "00",
+                                                 "-0",
+                                                 "18446744073709551616",
+                                                 "123456789012345678",
+                                                 "1e999",
+                                                 "1e-999",
+                                                 "true",
+                                                 "false",
+                                                 "null",
+                                                 "nul",
+                                                 " ",
+                                                 "\n",
+                                                 "\t",
+                                                 "\"",
+                                                 "\x01"};
   std::string text;
   const std::size_t pieces = 1 + random() % 9;
   for (std::size_t i = 0; i < pieces; ++i) text += kPieces[random() % std::size(kPieces)];
@@ -150,11 +179,11 @@ TEST(JsonReadTest, TakesExactlyWhatTheLibraryTakes) {
   support::Random random(support::seed());
   int taken = 0;
   for (int i = 0; i < 300'000; ++i) {
-    const std::string text = i % 2 == 0 ? scrambled(random) : "[" + scrambled(random) + "," + scrambled(random) + "]";
+    const std::string text =
+        i % 2 == 0 ? scrambled(random) : "[" + scrambled(random) + "," + scrambled(random) + "]";
     const auto document = Document::parse(text);
-    const bool refused_for_more =
-        !document && (document.error().code == Code::kNotFinite ||
-                      document.error().message.find("twice") != std::string::npos);
+    const bool refused_for_more = !document && (document.error().code == Code::kNotFinite ||
+                                                document.error().message.find("twice") != std::string::npos);
     EXPECT_TRUE(document.ok() == nlohmann::json::accept(text) || refused_for_more) << text;
     taken += document.ok() ? 1 : 0;
   }
@@ -176,7 +205,8 @@ TEST(JsonReadTest, NumbersAreReadToTheLastBit) {
     }
     ASSERT_TRUE(document.ok()) << text;
     const double value = (*document->root().array(1)->begin()).number().value();
-    EXPECT_EQ(std::memcmp(&value, &expected, sizeof value) == 0 || (value == 0 && expected == 0), true) << text;
+    EXPECT_EQ(std::memcmp(&value, &expected, sizeof value) == 0 || (value == 0 && expected == 0), true)
+        << text;
   }
 }
 

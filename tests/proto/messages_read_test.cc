@@ -144,8 +144,10 @@ TEST(EditRequestTest, ErrorsSayWhere) {
           {R"({"ops":[{"op":"remove","id":1},{"op":"remove","id":2},{"op":"remove","id":3}]})",
            Code::kTooLarge, "/ops"},
           {R"({"ops":[{"op":"remove-within"}]})", Code::kMalformed, "/ops/0"},
-          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4]]}]})", Code::kInvalidValue, "/ops/0/polygon"},
-          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5]]}]})", Code::kMalformed, "/ops/0/polygon/2"},
+          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4]]}]})", Code::kInvalidValue,
+           "/ops/0/polygon"},
+          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5]]}]})", Code::kMalformed,
+           "/ops/0/polygon/2"},
           {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5,6],[7,8],[9,0]]}]})", Code::kTooLarge,
            "/ops/0/polygon"},
           {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5,6]],"id":1}]})", Code::kMalformed,
@@ -154,7 +156,9 @@ TEST(EditRequestTest, ErrorsSayWhere) {
            R"({"op":"remove-within","polygon":[[1,2],[3,4],[5,6]]}]})",
            Code::kTooLarge, "/ops/1"},
       },
-      [](const char* body) { return proto::read_edit_request(body, {2, 1, 4}); });
+      [](const char* body) {
+        return proto::read_edit_request(body, {2, 1, 4});
+      });
 }
 
 TEST(ElevationRequestTest, ReadsPositionsAndSaysWhatIsWrong) {

@@ -37,7 +37,8 @@ bool Inside::holds(Point p) const {
   return inside;
 }
 
-std::vector<terrain::VertexId> vertices_within(const terrain::Terrain& terrain, const Ring& ring, std::size_t most) {
+std::vector<terrain::VertexId> vertices_within(const terrain::Terrain& terrain, const Ring& ring,
+                                               std::size_t most) {
   const Inside inside(ring);
   const mesh::Mesh& mesh = terrain.mesh();
   std::vector<terrain::VertexId> ids;

@@ -11,7 +11,8 @@
 
 namespace tin::query {
 
-/// A polygon that may cross itself: a point is inside if it lies on a side, or if an odd number of turns encloses it.
+/// A polygon that may cross itself: a point is inside if it lies on a side, or if an odd number of turns
+/// encloses it.
 class Inside {
  public:
   /// The last position need not repeat the first. Requires: positions on the lattice.
@@ -29,8 +30,9 @@ class Inside {
   exact::Point min_{}, max_{};
 };
 
-/// The ids of the vertices inside, ascending; no more than `most` + 1 of them. Cost: O(n), and as holds() for those in the
-/// polygon's box.
-std::vector<terrain::VertexId> vertices_within(const terrain::Terrain& terrain, const Ring& ring, std::size_t most);
+/// The ids of the vertices inside, ascending; no more than `most` + 1 of them. Cost: O(n), and as holds() for
+/// those in the polygon's box.
+std::vector<terrain::VertexId> vertices_within(const terrain::Terrain& terrain, const Ring& ring,
+                                               std::size_t most);
 
 }  // namespace tin::query

@@ -21,7 +21,7 @@ class FailingStore : public server::store::Store {
   using JournalRow = server::store::JournalRow;
 
   bool fail = false;
-  std::string source;  // of the TIN
+  std::string source;                  // of the TIN
   std::chrono::milliseconds delay{0};  // of a commit
   std::size_t appended = 0;            // revisions
   std::atomic<std::size_t> commits{0};

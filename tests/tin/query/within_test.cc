@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 #include "tests/support/point_sets.h"
@@ -27,15 +28,17 @@ std::optional<bool> in_odd_number_of_a_fan(const Ring& ring, Point p) {
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
     const Point a = ring[0], b = ring[i], c = ring[i + 1];
     if (on_segment(a, b, p) || on_segment(b, c, p) || on_segment(c, a, p)) return std::nullopt;
-    const bool left = orientation(a, b, p) > 0;
-    if (left == (orientation(b, c, p) > 0) && left == (orientation(c, a, p) > 0)) odd = !odd;
+    const std::int64_t at_ab = orientation(a, b, p), at_bc = orientation(b, c, p),
+                       at_ca = orientation(c, a, p);
+    if ((at_ab > 0 && at_bc > 0 && at_ca > 0) || (at_ab < 0 && at_bc < 0 && at_ca < 0)) odd = !odd;
   }
   return odd;
 }
 
 TEST(InsideTest, ASquareHoldsItsSidesAndCorners) {
   const Inside square({{0, 0}, {10, 0}, {10, 10}, {0, 10}});
-  for (const Point p : {Point{0, 0}, Point{10, 10}, Point{5, 0}, Point{0, 5}, Point{10, 7}, Point{3, 10}, Point{1, 1}})
+  for (const Point p :
+       {Point{0, 0}, Point{10, 10}, Point{5, 0}, Point{0, 5}, Point{10, 7}, Point{3, 10}, Point{1, 1}})
     EXPECT_TRUE(square.holds(p)) << p.x << " " << p.y;
   for (const Point p : {Point{-1, 5}, Point{11, 5}, Point{5, -1}, Point{5, 11}, Point{-1, 0}, Point{11, 10}})
     EXPECT_FALSE(square.holds(p)) << p.x << " " << p.y;
@@ -64,7 +67,8 @@ TEST(InsideTest, AgreesWithTheFanOfAnyRingThatMayCrossItself) {
       const Point p{value(random), value(random)};
       const auto expected = in_odd_number_of_a_fan(ring, p);
       if (!expected) continue;
-      EXPECT_EQ(polygon.holds(p), *expected) << "seed " << seed << " round " << round << ": " << p.x << " " << p.y;
+      EXPECT_EQ(polygon.holds(p), *expected)
+          << "seed " << seed << " round " << round << ": " << p.x << " " << p.y;
       inside += *expected ? 1 : 0;
       ++judged;
     }
@@ -77,7 +81,8 @@ TEST(VerticesWithinTest, GivesIdsInOrderAndStopsPastTheMost) {
   for (int y = 9; y >= 0; --y) {
     for (int x = 0; x < 10; ++x) placements.push_back({{x * 10, y * 10}, 0.0});
   }
-  const auto terrain = tin::terrain::Terrain::build({}, placements, tin::terrain::Duplicates::kReject).value();
+  const auto terrain =
+      tin::terrain::Terrain::build({}, placements, tin::terrain::Duplicates::kReject).value();
   const Ring ring{{20, 60}, {40, 60}, {40, 80}, {20, 80}};
   const std::vector<VertexId> expected{VertexId(13), VertexId(14), VertexId(15), VertexId(23), VertexId(24),
                                        VertexId(25), VertexId(33), VertexId(34), VertexId(35)};
