@@ -17,6 +17,13 @@ class Buffered {
   Buffered& operator=(const Buffered&) = delete;
   ~Buffered() { of_all_ -= counted_; }
 
+  /// The same, whether there is room or not.
+  void force(std::uint64_t bytes) {
+    resize(0);
+    counted_ = bytes <= kSmall ? 0 : bytes;
+    of_all_ += counted_;
+  }
+
   /// Makes the share that of `bytes`. False when there is no room: then it is what it was.
   bool resize(std::uint64_t bytes) {
     const std::uint64_t wanted = bytes <= kSmall ? 0 : bytes;

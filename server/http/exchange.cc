@@ -51,9 +51,13 @@ bool Exchange::hold_body() {
   return false;
 }
 
-/// The answer, or that there is no memory to keep it until the client has taken it.
+/// The answer, or that there is no memory to keep it until the client has taken it. What has changed something is
+/// answered in any case: a refusal would not be true.
 Answer Exchange::held(Answer answer) {
-  if (buffered_.resize(answer.body.size())) return answer;
+  const Route& route = *admission_.route;
+  const bool reads = route.need == Need::kRead || route.method == Method::kGet;
+  if (!reads) buffered_.force(answer.body.size());
+  if (!reads || buffered_.resize(answer.body.size())) return answer;
   return reply(no_room());
 }
 

@@ -230,6 +230,15 @@ TEST_F(LimitsTest, BodiesInMemoryShareWhatTheyMayTake) {
   EXPECT_EQ(RawClient(port_).ask(post_big(5 * kBig) + std::string(5 * kBig, 'y')).status, 503) << "past it";
 }
 
+/// It has been done: to say that it was refused would be wrong.
+TEST_F(LimitsTest, WhatChangedSomethingIsAnsweredWithOrWithoutRoom) {
+  options_.buffered_bytes = kBig;
+  add(Method::kPost, "/change", [](Request&) { return text(std::string(2 * kBig, 'c')); });
+  start();
+  EXPECT_EQ(ask("POST /change", "Content-Length: 0\r\n").body.size(), 2 * kBig);
+  EXPECT_EQ(RawClient(port_).ask(post_big(1000) + std::string(1000, 'y')).status, 200);
+}
+
 TEST_F(LimitsTest, AnswersThatWaitForSlowClientsShareItToo) {
   constexpr std::size_t kAnswer = 8'000'000;  // more than sockets hold
   options_.buffered_bytes = 2 * kAnswer;
