@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -86,7 +87,10 @@ struct SetZOp {
   VertexId id;
   double z = 0;
 };
-using EditOp = std::variant<InsertOp, RemoveOp, MoveOp, SetZOp>;
+struct RemoveWithinOp {
+  std::vector<Position2> polygon;  // at least three
+};
+using EditOp = std::variant<InsertOp, RemoveOp, MoveOp, SetZOp, RemoveWithinOp>;
 
 /// POST /tins/{tin}/edits. ops[i] stands at "/ops/i" in the body.
 struct EditRequest {
@@ -94,7 +98,12 @@ struct EditRequest {
   std::optional<std::string> crs;
   Remark remark;
 };
-tin::base::Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops);
+struct EditLimits {
+  std::size_t ops = 0;
+  std::size_t areas = 0;              // operations that concern an area
+  std::size_t polygon_positions = 0;  // of each of these
+};
+tin::base::Result<EditRequest> read_edit_request(std::string_view body, const EditLimits& limits);
 
 /// POST /tins/{tin}/elevation.
 struct ElevationRequest {
@@ -146,8 +155,13 @@ struct TinList {
 };
 std::string tin_list_json(const TinList& list);
 
-/// One id per op: of the vertex inserted or found, removed, moved or set.
-std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids);
+/// An operation that concerned an area, by its index, and how many vertices that were.
+using AreaResult = std::pair<std::size_t, std::size_t>;
+
+/// One id per op, of the vertex inserted or found, removed, moved or set; of an op in `areas` (ascending) as
+/// many as it removed.
+std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids,
+                             std::span<const AreaResult> areas = {});
 
 struct ElevationAnswer {
   std::optional<double> z;                          // null outside the hull and in voids

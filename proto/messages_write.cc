@@ -138,12 +138,27 @@ std::string tin_list_json(const TinList& list) {
   return json.take();
 }
 
-std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids) {
+std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids,
+                             std::span<const AreaResult> areas) {
   JsonWriter json;
   json.begin_object();
   json.key("revision").integer(revision);
   json.key("results").begin_array();
-  for (const VertexId id : ids) json.begin_object().key("id").integer(id.value()).end_object();
+  for (std::size_t op = 0; !ids.empty() || !areas.empty(); ++op) {
+    json.begin_object();
+    std::size_t taken = 1;
+    if (areas.empty() || areas.front().first != op) {
+      json.key("id").integer(ids.front().value());
+    } else {
+      taken = areas.front().second;
+      areas = areas.subspan(1);
+      json.key("removed").begin_array();
+      for (const VertexId id : ids.first(taken)) json.integer(id.value());
+      json.end_array();
+    }
+    ids = ids.subspan(taken);
+    json.end_object();
+  }
   json.end_array().end_object();
   return json.take();
 }

@@ -32,6 +32,7 @@ struct LimitConfig {
   std::int64_t vertices_per_tin = 50'000'000;
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;
+  std::int64_t areas_per_request = 16;  // edits of an area; each looks at all vertices
   std::int64_t positions_per_request = 1'000'000;
   std::int64_t polygon_positions = 5000;       // of a polygon that is asked about
   std::int64_t contour_levels = 10'000;        // per request
@@ -84,6 +85,8 @@ struct HttpConfig {
   std::int64_t header_fields = 100;
   std::int64_t target_bytes = 8 * 1024;
   std::int64_t header_seconds = 10;
+  std::int64_t buffered_bytes =
+      256 << 20;  // of bodies in memory and of answers that wait for clients, in all
   std::int64_t body_bytes_per_second = 1024;  // the least, either way
   std::int64_t stall_seconds = 60;            // without any progress of a body
   std::int64_t compress_from_bytes = 1024;    // of an answer in text, for clients that accept it; 0: never

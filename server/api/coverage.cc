@@ -218,8 +218,9 @@ Result<http::Body> write_raster(Context& context, const Request& request, const 
   Unfinished file{folder / ("coverage-" + std::to_string(made++) + ".tif")};
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(context.config.limits.export_seconds);
   const auto source = [&](std::int64_t row, std::span<double> values) -> Result<void> {
-    if (request.is_aborted()) return error(Code::kCancelled, "The server is stopping.");
-    if (std::chrono::steady_clock::now() > end) return error(Code::kTooLarge, "Making the raster takes too long: ask for fewer pixels.");
+    if (request.is_aborted()) return error(Code::kCancelled, "Nobody waits for this answer any more.");
+    if (std::chrono::steady_clock::now() > end)
+      return error(Code::kTooLarge, "Making the raster takes too long: ask for fewer pixels.");
     rows.read(row, values);
     return {};
   };

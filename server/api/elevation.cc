@@ -13,6 +13,7 @@
 #include "server/api/positions.h"
 #include "server/api/routes.h"
 #include "server/api/surface_work.h"
+#include "tin/delaunay/hilbert_sort.h"
 
 namespace server::api {
 
@@ -113,29 +114,57 @@ struct Manner {
   tin::query::Interpolation by = tin::query::Interpolation::kLinear;
 };
 
-constexpr std::size_t kAtOnce = 4096;  // positions that are located together
+constexpr std::size_t kAtOnce = 4000;  // positions that are located together
 
-/// Fills z[begin..end) from positions in the TIN's CRS. Many walks at a time hide the time that memory takes.
-void look_up_block(const Terrain& terrain, const Manner& manner, std::span<const double> x,
-                   std::span<const double> y, std::span<const std::uint8_t> ok, std::size_t begin,
-                   std::size_t end, std::vector<std::optional<double>>& z) {
-  std::vector<tin::exact::Point> points;
-  std::vector<std::size_t> indices;
-  for (std::size_t i = begin; i < end; ++i) {
-    if (ok[i] == 0) continue;
-    const auto at = terrain.frame().to_lattice(x[i], y[i]);
-    if (!at) continue;  // beyond the lattice: no elevation
-    points.push_back(*at);
-    indices.push_back(i);
-  }
+/// Fills z[indices[k]] with the elevation at points[k]. Many walks at a time hide the time that memory takes.
+void look_up_block(const Terrain& terrain, ElevationQuery& query, std::span<const tin::exact::Point> points,
+                   std::span<const std::uint32_t> indices, std::vector<tin::delaunay::Location>& locations,
+                   std::vector<std::optional<double>>& z) {
   const bool has_triangles = terrain.mesh().dimension() == 2;
-  std::vector<tin::delaunay::Location> locations;
   if (has_triangles) terrain.triangulation().locate_many(points, locations);
-  ElevationQuery query(terrain, engine_voids(manner.voids), manner.by);
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (has_triangles) query.start_from(locations[k].triangle);
     if (const auto found = query.at(points[k])) z[indices[k]] = found->z;
   }
+}
+
+/// Elevations at positions in the TIN's CRS, those with `ok`. Many are taken along the Hilbert curve, as the
+/// terrain is stored: each block of them stays in the caches.
+std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const Manner& manner,
+                                               std::span<const double> x, std::span<const double> y,
+                                               std::span<const std::uint8_t> ok) {
+  std::vector<tin::exact::Point> points;
+  std::vector<std::uint32_t> indices;
+  points.reserve(x.size());
+  indices.reserve(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (ok[i] == 0) continue;
+    const auto at = terrain.frame().to_lattice(x[i], y[i]);
+    if (!at) continue;  // beyond the lattice: no elevation
+    points.push_back(*at);
+    indices.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (points.size() > kAtOnce) {
+    std::vector<tin::exact::Point> sorted_points;
+    std::vector<std::uint32_t> sorted_indices;
+    sorted_points.reserve(points.size());
+    sorted_indices.reserve(points.size());
+    for (const auto& one : tin::delaunay::hilbert_sorted(points)) {
+      sorted_points.push_back(points[one.index]);
+      sorted_indices.push_back(indices[one.index]);
+    }
+    points.swap(sorted_points);
+    indices.swap(sorted_indices);
+  }
+  std::vector<std::optional<double>> z(x.size());
+  ElevationQuery query(terrain, engine_voids(manner.voids), manner.by);
+  std::vector<tin::delaunay::Location> locations;
+  for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
+    const std::size_t size = std::min(kAtOnce, points.size() - begin);
+    look_up_block(terrain, query, std::span(points).subspan(begin, size),
+                  std::span(indices).subspan(begin, size), locations, z);
+  }
+  return z;
 }
 
 /// Elevations at positions of `crs`; nothing where there is none.
@@ -146,11 +175,7 @@ Result<std::vector<std::optional<double>>> elevations(const Terrain& terrain, st
   if (!positions) return positions.error();
   std::vector<std::uint8_t> ok;
   positions->convert(x, y, ok);
-  std::vector<std::optional<double>> z(x.size());
-  for (std::size_t begin = 0; begin < x.size(); begin += kAtOnce) {
-    look_up_block(terrain, manner, x, y, ok, begin, std::min(begin + kAtOnce, x.size()), z);
-  }
-  return z;
+  return look_up_all(terrain, manner, x, y, ok);
 }
 
 // Doubles travel as they lie in memory.

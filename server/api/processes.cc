@@ -48,6 +48,24 @@ jobs::JobQueue::Work in_document(jobs::JobQueue::Work work) {
   };
 }
 
+/// Waits for the job as long as the client does, at most for the time that the configuration says. A job
+/// whose client is gone is dismissed: nobody knows its id. Nothing: it has not finished.
+std::optional<jobs::JobStatus> finished_in_time(Context& context, const jobs::JobId& job,
+                                                const Request& request) {
+  constexpr std::chrono::milliseconds kAskEvery{200};
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(context.config.jobs.sync_seconds);
+  while (std::chrono::steady_clock::now() < end) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    const auto status = context.jobs.wait(job, std::min(left, kAskEvery));
+    if (!status || status->finished_ms) return status;
+    if (!request.is_aborted()) continue;
+    static_cast<void>(context.jobs.dismiss(job));  // it may have been forgotten by now
+    return context.jobs.status(job);
+  }
+  return std::nullopt;
+}
+
 Result<Response> execute(Context& context, const Request& request) {
   const auto id = request.path_parameter("process");
   const Process* process = processes::find_process(id);
@@ -62,7 +80,7 @@ Result<Response> execute(Context& context, const Request& request) {
   if (!job) return job.error();
   const Slot slot(context.waiting);
   if (!prefers_async(request) && slot.taken()) {
-    const auto finished = context.jobs.wait(*job, std::chrono::seconds(context.config.jobs.sync_seconds));
+    const auto finished = finished_in_time(context, *job, request);
     if (finished && finished->finished_ms) return job_result_answer(*finished);
   }
   return job_accepted_answer(context.jobs, *job);

@@ -190,6 +190,7 @@ Result<Response> create_from_upload(Context& context, Request& request) {
     return error(Code::kTooMany,
                  "Too many files are being read; try again, or ask with Prefer: respond-async.");
   tin::base::Progress progress;
+  const http::Attention::Work unless_unwanted(request.attention, progress);
   const auto made = app::import_tin(context.catalogue, request.body_file, *import, progress);
   if (!made) return made.error();
   return created_answer(context, **made, request);

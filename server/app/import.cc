@@ -51,6 +51,17 @@ Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplic
   return made;
 }
 
+/// What was read and the terrain that becomes of it. A raster that is simplified at once is never a terrain
+/// as a whole: working on it took 70 bytes per sample where most, and more than anybody wants, became
+/// vertices.
+std::uint64_t bytes_to_build(const gdal::Import& import) {
+  constexpr std::uint64_t kBytesPerSample = 80;
+  const auto samples = static_cast<std::uint64_t>(import.heights.size());
+  if (import.placements.empty()) return samples * kBytesPerSample;
+  return import.placements.size() * (sizeof(tin::terrain::Placement) + kBytesPerVertex) +
+         samples * sizeof(double);
+}
+
 Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, Progress& progress) {
   if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress);
   if (import.grid) return build_from_heights(std::move(import), *request.simplify, progress);
@@ -60,7 +71,7 @@ Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request,
 }  // namespace
 
 Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const ImportRequest& request,
-                                       Progress& progress) {
+                                       Progress& progress, MemoryBudget* memory) {
   progress.begin_phase(0, 0.3);
   gdal::ImportOptions options = request.options;
   options.heights_only = request.simplify.has_value();
@@ -69,6 +80,12 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
   if (request.vertical_unit) {
     import->frame.vertical_unit = request.vertical_unit->name;
     import->frame.vertical_unit_m = request.vertical_unit->metres;
+  }
+  std::optional<MemoryBudget::Lease> lease;
+  if (memory != nullptr) {
+    auto given = memory->lease(bytes_to_build(*import));
+    if (!given) return given.error();
+    lease.emplace(std::move(*given));
   }
   progress.begin_phase(0.3, 0.9);
   auto made = build(*std::move(import), request, progress);
@@ -80,7 +97,7 @@ Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesys
                                         const ImportRequest& request, Progress& progress) {
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
   if (auto room = catalogue.memory().check(0); !room) return room.error();
-  auto made = import_terrain(file, request, progress);
+  auto made = import_terrain(file, request, progress, &catalogue.memory());
   if (!made) return made.error();
   const auto completeness = made->report ? Completeness::kSomeSamples : Completeness::kAllSamples;
   std::string source = attach_source(made->terrain, made->source, completeness);

@@ -1,6 +1,9 @@
 // Work that is asked for now and taken later.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "tests/contract/test_server.h"
 
 namespace tests::contract {
@@ -124,6 +127,28 @@ TEST_F(JobsTest, WhatThereIsNotIsNamedAsTheStandardSays) {
   auto busy = server_.occupy_worker();
   const std::string job = server_.upload("/tins?id=new", "text/plain", ascii_grid(3, 3), kAsync).header("location");
   EXPECT_EQ(type(job + "/results"), base + "result-not-ready");
+}
+
+/// Who waits for a job and goes never learns its id.
+TEST_F(JobsTest, AJobThatAClientWaitsForEndsWhenTheClientGoes) {
+  ASSERT_EQ(server_.post_json("/tins", R"({"id":"t","vertices":[[0,0,1],[9,0,2],[0,9,3]]})").status, 201);
+  const auto busy = server_.occupy_worker();
+  const std::string body = R"({"inputs":{"tin":"t","tolerance":1}})";
+  const auto newest = [&] { return Json::parse(server_.get("/jobs").body).at("jobs").at(0); };
+  const Json occupying = newest();
+  {
+    support::RawClient client(server_.port());
+    client.send(
+        "POST /processes/simplify/execution HTTP/1.1\r\nHost: t\r\nContent-Type: application/json\r\n"
+        "Content-Length: " +
+        std::to_string(body.size()) + "\r\n\r\n" + body);
+    for (int i = 0; i < 500 && newest() == occupying; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(newest().at("status"), "accepted");
+  }
+  for (int i = 0; i < 500 && newest().at("status") == "accepted"; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(newest().at("status"), "dismissed");
 }
 
 }  // namespace

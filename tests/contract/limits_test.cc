@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
 #include <thread>
 
 #include "tests/contract/test_server.h"
@@ -286,6 +287,62 @@ TEST(LimitsTest, JobsThatAreRemembered) {
         200);
   }
   EXPECT_EQ(Json::parse(server.get("/jobs").body).at("jobs").size(), 2U);
+}
+
+/// With one of two places taken another request goes on; with both, it is told to come later.
+void expect_places(TestServer& server, server::api::Slots server::api::Context::*slots,
+                   const std::function<int()>& status_of_one) {
+  const auto one = server.take_place(slots);
+  EXPECT_EQ(status_of_one() / 100, 2);
+  {
+    const auto other = server.take_place(slots);
+    EXPECT_EQ(status_of_one(), 429);
+  }
+  EXPECT_EQ(status_of_one() / 100, 2);
+}
+
+TEST(LimitsTest, UploadsAndExportsAtOnce) {
+  TestServer server([](server::Config& config) {
+    config.limits.uploads_at_once = 2;
+    config.limits.exports_at_once = 2;
+  });
+  int count = 0;
+  expect_places(server, &server::api::Context::uploads, [&] {
+    return server.upload("/tins?id=t" + std::to_string(++count), "text/plain", ascii_grid(3, 3)).status;
+  });
+  expect_places(server, &server::api::Context::exports,
+                [&] { return server.get("/tins/t1/export?f=geotiff").status; });
+  EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+}
+
+/// Who finds no place to wait in is told where to ask later.
+TEST(LimitsTest, RequestsThatWaitForTheirJob) {
+  TestServer server([](server::Config& config) { config.jobs.sync_waiting = 2; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(4) + "}").status, 201);
+  const auto simplify = [&] {
+    return server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","tolerance":1}})")
+        .status;
+  };
+  const auto one = server.take_place(&server::api::Context::waiting);
+  EXPECT_EQ(simplify(), 200);
+  const auto other = server.take_place(&server::api::Context::waiting);
+  EXPECT_EQ(simplify(), 201);
+}
+
+TEST(LimitsTest, JobsThatRun) {
+  TestServer server([](server::Config& config) { config.jobs.workers = 2; });
+  const auto submit = [&](const std::string& id) {
+    return server.upload("/tins?id=" + id, "text/plain", ascii_grid(3, 3), "Prefer: respond-async\r\n")
+        .header("location");
+  };
+  const auto one = server.occupy_worker();
+  EXPECT_EQ(server.finished(submit("a")), "successful") << "by the other worker";
+  {
+    const auto other = server.occupy_worker();
+    const std::string job = submit("b");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(Json::parse(server.get(job).body).at("status"), "accepted");
+  }
 }
 
 }  // namespace
