@@ -108,7 +108,9 @@ std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const S
   auto tin = std::make_unique<Patch>(samples, std::span<const Pin>(), pins, threads);
   std::vector<Pin>().swap(pins);
   const auto on_seam = find_seams(*tin, tiling);
-  const auto suspect = [&on_seam](TriangleSlot t) { return bool{on_seam[t.value()]}; };
+  // An edge of the samples' surface may have called for a sample beyond the tile, so nothing is known of any triangle.
+  const bool all = samples.has_surface();
+  const auto suspect = [&on_seam, all](TriangleSlot t) { return all || on_seam[t.value()]; };
   const Phase rest = phase.part(0.8, 1);
   if (Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5), suspect) == Greedy::End::kCancelled) return nullptr;
   if (!Decimation(*tin, tolerance).run(rest.part(0.5, 1))) return nullptr;
