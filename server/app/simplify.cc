@@ -1,5 +1,7 @@
 #include "server/app/simplify.h"
 
+#include "server/app/time_budget.h"
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -62,18 +64,16 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   if (!source) return source.error();
   progress.begin_phase(0.02, 0.95);
   auto options = request.options;
-  options.threads = std::max(1U, std::thread::hardware_concurrency());
-  if (request.max_seconds) {
-    const auto end = start + std::chrono::duration_cast<Clock::duration>(
-                                 std::chrono::duration<double>(*request.max_seconds));
-    options.out_of_time = [end] { return Clock::now() >= end; };
-  }
+  options.threads = simplify_threads();
+  const TimeBudget budget(request.max_seconds, start);
+  options.out_of_time = budget.question();
   options.protect = protected_positions(*seen.terrain, request.protect);
   auto outcome = tin::simplify::simplify(*seen.terrain, *source ? &**source : nullptr,
                                          seen.terrain->amendments().own(), options, &progress);
   if (!outcome) return outcome.error();
   progress.begin_phase(0.95, 1);
   result.report = outcome->report;
+  result.out_of_time = budget.was_spent();
   if (progress.cancelled()) return error(Code::kCancelled, "Cancelled.");
   const Thinning thinning{std::move(outcome->removed), std::move(outcome->inserted),
                           std::move(outcome->reset)};
