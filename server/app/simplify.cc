@@ -18,6 +18,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kBytesPerSurfaceSample = 120;  // while its triangulation is built
+
 /// The samples of the source that are in force in a version; none where no source is kept, or no surface is
 /// left.
 Result<std::optional<SourceSamples>> samples_in_force(const Tin& tin, const Terrain& terrain,
@@ -62,6 +64,13 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   result.tin = request.tin;
   const auto source = samples_in_force(*request.tin, *seen.terrain, result);
   if (!source) return source.error();
+  std::optional<MemoryBudget::Lease> surface;  // the triangulation of all samples
+  if (request.options.against == tin::simplify::Against::kSurface) {
+    auto held = catalogue.memory().lease(
+        kBytesPerSurfaceSample * (*source ? (*source)->sample_count() : seen.terrain->vertex_count()));
+    if (!held) return held.error();
+    surface.emplace(*std::move(held));
+  }
   progress.begin_phase(0.02, 0.95);
   auto options = request.options;
   options.threads = simplify_threads();
@@ -78,6 +87,7 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   const Thinning thinning{std::move(outcome->removed), std::move(outcome->inserted),
                           std::move(outcome->reset)};
   if (request.as) {
+    surface.reset();
     lease.reset();  // what is kept of it is counted by create()
     auto made = create_thinned(catalogue, request, *seen.terrain, thinning);
     if (!made) return made.error();

@@ -15,7 +15,8 @@ class TimeBudget {
 
   /// Nothing: no limit. Requires: at most 1e9.
   explicit TimeBudget(std::optional<double> seconds, Clock::time_point start = Clock::now()) {
-    if (seconds) end_ = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*seconds));
+    if (seconds)
+      end_ = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*seconds));
   }
 
   /// Whether time is up; empty without a limit. May be asked by several threads.

@@ -23,7 +23,7 @@ using tin::simplify::Options;
 namespace {
 
 constexpr std::string_view kOptions[] = {"--dem", "--tolerances", "--efforts", "--threads", "--enlarge", "--budget-percent",
-                                         "--peers", "--dump", "--svg", "--error-map", "--seed", "--elevations", "--against", "--keep-flat"};
+                                         "--peers", "--dump", "--svg", "--error-map", "--seed", "--elevations", "--against", "--keep-flat", "--pixels"};
 
 Effort effort_of(const std::string& name) {
   if (name == "fast") return Effort::kFast;
@@ -127,6 +127,7 @@ int run_simplify(std::span<const std::string> arguments) {
   const Arguments given(arguments, kOptions);
   Dem dem = read_dem(given.text("--dem", ""));
   if (const std::size_t side = given.number("--enlarge", 0); side > 0) dem = enlarged(dem, static_cast<std::int32_t>(side));
+  if (given.text("--pixels", "own") == "square") dem = squared(dem);
   if (const auto path = given.text("--dump", ""); !path.empty()) {
     dump(dem, path);
     return 0;

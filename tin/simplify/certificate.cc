@@ -61,9 +61,9 @@ class Certifier {
       weights = facet_.weights(sample.at);
       TIN_CHECK(weights.has_value());
     }
-    const double allowance = result_.samples().allowance(sample.sample, tolerance_);
-    if (allowance < tolerance_) ++out.level;
-    const auto verdict = facet_.judge(*weights, sample.z, allowance);
+    const bool is_level = result_.samples().is_level(sample.sample);
+    if (is_level) ++out.level;
+    const auto verdict = facet_.judge(*weights, sample.z, is_level ? 0 : tolerance_);
     if (is_corner(sample)) ++out.on_vertices;
     out.within = out.within && verdict.within;
     const double bins = bin_ > 0 ? verdict.error / bin_ : 0;

@@ -9,9 +9,9 @@
 
 namespace tin::simplify {
 
-/// A sample of height z, where the corner's weight is `own` and the others make up `rest`, both times the area, allows the corner what
-/// lies between (area * (z - tolerance) - rest) / own and (area * (z + tolerance) - rest) / own. The strictest quotients are
-/// found without dividing.
+/// A sample of height z, where the corner's weight is `own` and the others make up `rest`, both times the
+/// area, allows the corner what lies between (area * (z - tolerance) - rest) / own and (area * (z +
+/// tolerance) - rest) / own. The strictest quotients are found without dividing.
 class Narrowing {
  public:
   Narrowing(double area, double tolerance) : area_(area), reach_(area * tolerance) {}
@@ -57,7 +57,8 @@ class LatticeNarrowing {
   void take(exact::Point p, double z) {
     const std::int64_t b = exact::orientation(c_.at, a_.at, p), c = exact::orientation(a_.at, b_.at, p);
     if (b < 0 || c < 0 || area_ - b - c < 0) return;
-    found_.take(static_cast<double>(area_ - b - c), static_cast<double>(b) * b_.z + static_cast<double>(c) * c_.z, z);
+    found_.take(static_cast<double>(area_ - b - c),
+                static_cast<double>(b) * b_.z + static_cast<double>(c) * c_.z, z);
   }
   bool any() const { return found_.any(); }
   void narrow(Heights& heights) const { found_.narrow(heights); }

@@ -79,7 +79,9 @@ class Finder {
   }
 
  private:
-  bool cancelled(SampleIndex sample) const { return sample % 4096 == 0 && progress_ != nullptr && progress_->cancelled(); }
+  bool cancelled(SampleIndex sample) const {
+    return sample % 4096 == 0 && progress_ != nullptr && progress_->cancelled();
+  }
 
   void find_level() {
     level_.assign(samples_.end(), false);
@@ -88,9 +90,9 @@ class Finder {
       const double z = samples_.site(sample).z;
       const auto around = neighbourhood_.of(sample);
       // In a corner of a raster there are three.
-      level_[sample] = around.size() >= 3 && std::all_of(around.begin(), around.end(), [&](SampleIndex beside) {
-        return samples_.site(beside).z == z;
-      });
+      level_[sample] =
+          around.size() >= 3 && std::all_of(around.begin(), around.end(),
+                                            [&](SampleIndex beside) { return samples_.site(beside).z == z; });
     }
   }
 
@@ -115,9 +117,12 @@ class Finder {
 
 class PlateauSamples final : public WrappedSamples {
  public:
-  PlateauSamples(std::unique_ptr<Samples> samples, std::vector<SampleIndex> flat, std::vector<SampleIndex> still,
-                 const base::Progress* progress)
-      : WrappedSamples(std::move(samples)), flat_(std::move(flat)), still_(std::move(still)), tree_(corners(), 0, progress) {
+  PlateauSamples(std::unique_ptr<Samples> samples, std::vector<SampleIndex> flat,
+                 std::vector<SampleIndex> still, const base::Progress* progress)
+      : WrappedSamples(std::move(samples)),
+        flat_(std::move(flat)),
+        still_(std::move(still)),
+        tree_(corners(), 0, progress) {
     names_.reserve(flat_.size());
     for (SampleIndex i = 0; i < tree_.end(); ++i) names_.push_back(*inner().find(tree_.position(i)));
   }
@@ -131,8 +136,8 @@ class PlateauSamples final : public WrappedSamples {
     keep_worse(found, flat);
     return found;
   }
-  double allowance(SampleIndex sample, double tolerance) const override {
-    return std::binary_search(flat_.begin(), flat_.end(), sample) ? 0 : inner().allowance(sample, tolerance);
+  bool is_level(SampleIndex sample) const override {
+    return std::binary_search(flat_.begin(), flat_.end(), sample);
   }
   bool may_float(SampleIndex sample) const override {
     return inner().may_float(sample) && !std::binary_search(still_.begin(), still_.end(), sample);
@@ -156,8 +161,8 @@ class PlateauSamples final : public WrappedSamples {
 
 }  // namespace
 
-std::unique_ptr<Samples> with_plateaus(std::unique_ptr<Samples> samples, const SourceMesh* mesh, std::size_t least,
-                                       const base::Progress* progress) {
+std::unique_ptr<Samples> with_plateaus(std::unique_ptr<Samples> samples, const SourceMesh* mesh,
+                                       std::size_t least, const base::Progress* progress) {
   Finder finder(*samples, mesh, progress);
   auto flat = finder.find(least);
   if (flat.empty()) return samples;

@@ -83,8 +83,8 @@ class Samples {
   virtual EdgeScan scan_edge(const Site&, const Site&, double) const { return {}; }
   /// Whether it does: then a scan of a triangle looks at its sides as well.
   virtual bool has_surface() const { return false; }
-  /// How far a sample may be from the TIN, where the tolerance is this.
-  virtual double allowance(SampleIndex, double tolerance) const { return tolerance; }
+  /// Whether no distance at all is allowed to a sample, whatever the tolerance.
+  virtual bool is_level(SampleIndex) const { return false; }
   /// Whether a vertex there may have another height than the sample.
   virtual bool may_float(SampleIndex) const { return true; }
 

@@ -33,7 +33,9 @@ SourceMesh::SourceMesh(const Samples& samples, unsigned threads) : slots_(sample
 SourceMesh::Exit SourceMesh::leave(VertexSlot from, Point a, Point b) const {
   const Point here = mesh_.point(from);
   const auto is_ahead = [&](Point p) {
-    return (std::int64_t{b.x} - a.x) * (std::int64_t{p.x} - here.x) + (std::int64_t{b.y} - a.y) * (std::int64_t{p.y} - here.y) > 0;
+    return (std::int64_t{b.x} - a.x) * (std::int64_t{p.x} - here.x) +
+               (std::int64_t{b.y} - a.y) * (std::int64_t{p.y} - here.y) >
+           0;
   };
   const TriangleSlot first = mesh_.triangle_at(from);
   TriangleSlot t = first;
@@ -44,7 +46,8 @@ SourceMesh::Exit SourceMesh::leave(VertexSlot from, Point a, Point b) const {
       const std::int64_t side = exact::orientation(a, b, mesh_.point(p));
       if (side == 0 && is_ahead(mesh_.point(p))) return {p, {}};
       // From the right of the segment counter-clockwise to its left: that is over what is ahead.
-      if (side < 0 && q != mesh::kInfinite && exact::orientation(a, b, mesh_.point(q)) > 0) return {std::nullopt, mesh_.twin(t, i)};
+      if (side < 0 && q != mesh::kInfinite && exact::orientation(a, b, mesh_.point(q)) > 0)
+        return {std::nullopt, mesh_.twin(t, i)};
     }
     t = mesh_.twin(t, mesh::next3(i)).triangle();
   } while (t != first);

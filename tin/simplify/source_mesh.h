@@ -29,15 +29,16 @@ class SourceMesh {
     std::int64_t from_a;      // and from_a / (to_p + to_q) of the way from a to b; > 0
     std::int64_t whole() const { return to_p + to_q; }
   };
-  /// Calls visit(crossing) for each edge that crosses the segment between two samples strictly inside both, in order, until it returns
-  /// false. Requires: both stand at vertices.
+  /// Calls visit(crossing) for each edge that crosses the segment between two samples strictly inside both,
+  /// in order, until it returns false. Requires: both stand at vertices.
   template <class Visit>
   void visit_crossings(const Site& a, const Site& b, const Visit& visit) const;
 
   /// How far the segment, with its ends at the heights of a and b, is from the surface at a crossing.
   Verdict judge(const Crossing& at, const Site& a, const Site& b, double tolerance) const {
     const double zp = z(at.p), zq = z(at.q);
-    return judge_sum({{{at.from_a, b.z, a.z}, {at.to_q, a.z, zp}, {at.to_p, a.z, zq}}}, at.whole(), tolerance);
+    return judge_sum({{{at.from_a, b.z, a.z}, {at.to_q, a.z, zp}, {at.to_p, a.z, zq}}}, at.whole(),
+                     tolerance);
   }
   /// The height of the surface there, rounded.
   double height(const Crossing& at) const {
@@ -53,9 +54,9 @@ class SourceMesh {
   Exit leave(mesh::VertexSlot from, exact::Point a, exact::Point b) const;
 
   mesh::Mesh mesh_;
-  std::vector<double> z_;                 // by vertex slot
-  std::vector<SampleIndex> samples_of_;   // the same
-  std::vector<std::uint32_t> slots_;      // by sample
+  std::vector<double> z_;                // by vertex slot
+  std::vector<SampleIndex> samples_of_;  // the same
+  std::vector<std::uint32_t> slots_;     // by sample
 };
 
 template <class Visit>

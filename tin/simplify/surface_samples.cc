@@ -29,7 +29,8 @@ class SurfaceSamples final : public WrappedSamples {
     return found;
   }
 
-  void narrow(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override {
+  void narrow(const Site& a, const Site& b, const Site& c, double tolerance,
+              Heights& heights) const override {
     inner().narrow(a, b, c, tolerance, heights);
     for (const Site* other : {&b, &c}) {
       Narrowing narrowing(1, tolerance);
@@ -76,7 +77,8 @@ class SurfaceSamples final : public WrappedSamples {
 
 }  // namespace
 
-std::unique_ptr<Samples> with_surface(std::unique_ptr<Samples> samples, std::shared_ptr<const SourceMesh> mesh) {
+std::unique_ptr<Samples> with_surface(std::unique_ptr<Samples> samples,
+                                      std::shared_ptr<const SourceMesh> mesh) {
   return std::make_unique<SurfaceSamples>(std::move(samples), std::move(mesh));
 }
 

@@ -8,8 +8,10 @@
 
 namespace tin::simplify {
 
-/// Between two surfaces of triangles the distance is largest at a vertex of one of them, or where edges of both cross. Vertices of the TIN
-/// are samples, so the samples over a triangle and the crossings along its sides say all.
-std::unique_ptr<Samples> with_surface(std::unique_ptr<Samples> samples, std::shared_ptr<const SourceMesh> mesh);
+/// Between two surfaces of triangles the distance is largest at a vertex of one of them, or where edges of
+/// both cross. Vertices of the TIN are samples, so the samples over a triangle and the crossings along its
+/// sides say all.
+std::unique_ptr<Samples> with_surface(std::unique_ptr<Samples> samples,
+                                      std::shared_ptr<const SourceMesh> mesh);
 
 }  // namespace tin::simplify

@@ -161,14 +161,14 @@ TEST_F(SimplifyTest, ACancelledSimplificationEndsWithinASecond) {
   const auto wave = [&](auto c, auto r) {
     return std::optional(std::round(300 * std::sin(c * 0.03) * std::cos(r * 0.02) + static_cast<double>(random_() % 12)));
   };
-  const Terrain source = support::raster_terrain(heights(900, 800, wave));
+  const Terrain source = support::raster_terrain(heights(480, 400, wave));
   Options all = to(2, Effort::kThorough);
   all.elevations = tin::simplify::Elevations::kFit;
   all.against = tin::simplify::Against::kSurface;
   all.keep_flat = 9;
   int stopped = 0;
-  for (const Options& options : {to(2), to(2, Effort::kThorough), at_most(30'000, Effort::kBalanced), all}) {
-    for (const double moment : {0.0, 0.02, 0.06, 0.3, 0.7}) {
+  for (const Options& options : {to(2), to(2, Effort::kThorough), at_most(9000, Effort::kBalanced), all}) {
+    for (const double moment : {0.0, 0.03, 0.3}) {
       Progress progress;
       std::clock_t asked = 0;
       std::jthread canceller([&](const std::stop_token& done) {
@@ -186,7 +186,7 @@ TEST_F(SimplifyTest, ACancelledSimplificationEndsWithinASecond) {
       EXPECT_LT(static_cast<double>(ended - asked) / CLOCKS_PER_SEC, 1) << moment;
     }
   }
-  EXPECT_GT(stopped, 8);
+  EXPECT_GT(stopped, 4);
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ Options fitted(Options options) {
 /// Hills of whole metres, so large that several patches work on them.
 Terrain hills(std::int32_t width, std::int32_t height) {
   return support::raster_terrain(heights(width, height, [](auto c, auto r) {
-    return std::optional(std::round(120 * std::sin(c * 0.07) * std::cos(r * 0.05) + 15 * std::sin(c * 0.4 + r * 0.3)));
+    return std::optional(
+        std::round(120 * std::sin(c * 0.07) * std::cos(r * 0.05) + 15 * std::sin(c * 0.4 + r * 0.3)));
   }));
 }
 
@@ -87,7 +88,8 @@ TEST_F(FitTest, WhatNeverGoesKeepsItsHeight) {
   Options options = fitted(to(5, Effort::kBalanced));
   std::set<tin::exact::Point> fixed{source.bounds()->min, source.bounds()->max};
   for (std::uint64_t i = 1; i <= 40; ++i) {
-    options.protect.push_back(source.vertex(tin::terrain::VertexId(1 + i * 7919 % source.vertex_count()))->at);
+    options.protect.push_back(
+        source.vertex(tin::terrain::VertexId(1 + i * 7919 % source.vertex_count()))->at);
     fixed.insert(options.protect.back());
   }
   const Terrain result = expect_kept(source, options);
@@ -128,7 +130,8 @@ TEST_F(FitTest, ASecondSimplificationIsHeldAgainstTheFirstSamples) {
   const auto source = support::raster_source(full);
   Terrain terrain = full;
   for (const double tolerance : {9.0, 2.0, 30.0}) {
-    const auto outcome = tin::simplify::simplify(terrain, &source, {}, fitted(to(tolerance, Effort::kBalanced)), nullptr);
+    const auto outcome =
+        tin::simplify::simplify(terrain, &source, {}, fitted(to(tolerance, Effort::kBalanced)), nullptr);
     ASSERT_TRUE(outcome.ok());
     terrain = applied(terrain, *outcome);
     EXPECT_EQ(tin::mesh::validate(terrain.mesh()).value_or(""), "");

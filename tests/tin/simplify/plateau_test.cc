@@ -38,7 +38,8 @@ double lake_district(std::int32_t c, std::int32_t r) {
 }
 
 Terrain lakes() {
-  return support::raster_terrain(heights(kWidth, kHeight, [](auto c, auto r) { return std::optional(lake_district(c, r)); }));
+  return support::raster_terrain(
+      heights(kWidth, kHeight, [](auto c, auto r) { return std::optional(lake_district(c, r)); }));
 }
 
 /// The samples that are level with the up to eight around them, of the lake and of the sea.
@@ -95,6 +96,7 @@ TEST_F(PlateauTest, ALakeAndTheSeaStayFlatWhileTheRestIsThinned) {
       EXPECT_EQ(simplify(source, flat(options), nullptr)->report.level, level.size());
     }
   }
+  EXPECT_EQ(simplify(source, flat(to(0)), nullptr)->report.level, level.size());
 }
 
 TEST_F(PlateauTest, SmallPlateausAndPondsMayBeTilted) {

@@ -37,7 +37,8 @@ Options both(double tolerance, std::size_t vertices) {
   return options;
 }
 
-tin::base::Result<Outcome> simplify(const Terrain& terrain, const Options& options, tin::base::Progress* progress) {
+tin::base::Result<Outcome> simplify(const Terrain& terrain, const Options& options,
+                                    tin::base::Progress* progress) {
   return tin::simplify::simplify(terrain, nullptr, {}, options, progress);
 }
 
@@ -61,7 +62,8 @@ void expect_true_report(const Terrain& source, const Terrain& result, const Outc
   EXPECT_EQ(judge(source, result, above).value_or(""), "");
   EXPECT_LE(report.rmse, report.max_error);
   EXPECT_EQ(report.samples, source.vertex_count());
-  EXPECT_EQ(std::accumulate(report.histogram.begin(), report.histogram.end(), std::size_t{0}), report.samples);
+  EXPECT_EQ(std::accumulate(report.histogram.begin(), report.histogram.end(), std::size_t{0}),
+            report.samples);
   ASSERT_EQ(report.worst.has_value(), report.max_error > 0);
   if (!report.worst) return;
   EXPECT_EQ(report.worst->error, report.max_error);

@@ -1,5 +1,5 @@
-// Both scans of whole heights, the one four cells at a time where the processor can and the one in integers, against each other
-// and against a plain search.
+// Both scans of whole heights, the one four cells at a time where the processor can and the one in integers,
+// against each other and against a plain search.
 #include "tin/simplify/whole_scan.h"
 
 #include <gtest/gtest.h>
@@ -41,23 +41,29 @@ class WholeScanTest : public testing::Test {
   WholeHeights heights() const { return {cells_.data(), kWidth}; }
 
   /// Over the triangle of these corners and heights.
-  static WholePlane plane(GridPoint a, GridPoint b, GridPoint c, std::int64_t za, std::int64_t zb, std::int64_t zc) {
-    const std::int64_t bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y, turn = bx * cy - by * cx;
+  static WholePlane plane(GridPoint a, GridPoint b, GridPoint c, std::int64_t za, std::int64_t zb,
+                          std::int64_t zc) {
+    const std::int64_t bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y,
+                       turn = bx * cy - by * cx;
     const std::int64_t sign = turn < 0 ? -1 : 1, rise_b = sign * (zb - za), rise_c = sign * (zc - za);
     return {a, b, c, sign * turn, sign * turn * za, rise_b * cy - rise_c * by, rise_c * bx - rise_b * cx};
   }
   /// Cell by cell.
   WorstCell search(const WholePlane& p) const {
     const auto turn = [](GridPoint u, GridPoint v, std::int32_t x, std::int32_t y) {
-      return (std::int64_t{v.x} - u.x) * (std::int64_t{y} - u.y) - (std::int64_t{v.y} - u.y) * (std::int64_t{x} - u.x);
+      return (std::int64_t{v.x} - u.x) * (std::int64_t{y} - u.y) -
+             (std::int64_t{v.y} - u.y) * (std::int64_t{x} - u.x);
     };
     const std::int64_t sign = turn(p.a, p.b, p.c.x, p.c.y) < 0 ? -1 : 1;
     WorstCell worst;
     for (std::int32_t y = 0; y < kHeight; ++y) {
       for (std::int32_t x = 0; x < kWidth; ++x) {
         const std::int32_t z = cells_[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)];
-        if (z == WholeHeights::kVoid || sign * turn(p.a, p.b, x, y) < 0 || sign * turn(p.b, p.c, x, y) < 0 || sign * turn(p.c, p.a, x, y) < 0) continue;
-        const std::int64_t distance = std::abs(p.base + (x - p.a.x) * p.slope_x + (y - p.a.y) * p.slope_y - p.area * z);
+        if (z == WholeHeights::kVoid || sign * turn(p.a, p.b, x, y) < 0 || sign * turn(p.b, p.c, x, y) < 0 ||
+            sign * turn(p.c, p.a, x, y) < 0)
+          continue;
+        const std::int64_t distance =
+            std::abs(p.base + (x - p.a.x) * p.slope_x + (y - p.a.y) * p.slope_y - p.area * z);
         if (distance > worst.distance) worst = {distance, static_cast<std::uint32_t>(y * kWidth + x)};
       }
     }
@@ -76,7 +82,8 @@ TEST_F(WholeScanTest, BothFindTheFirstOfTheWorstCells) {
       fill(largest, voids);
       for (int round = 0; round < 400; ++round) {
         const std::int32_t reach = 2 + round % 80;
-        const auto p = plane(cell(reach), cell(reach), cell(reach), height(largest), height(largest), height(largest));
+        const auto p =
+            plane(cell(reach), cell(reach), cell(reach), height(largest), height(largest), height(largest));
         if (p.area == 0) continue;
         const WorstCell expected = search(p), integers = scan_by_integers(heights(), p, INT64_MAX);
         EXPECT_EQ(integers.distance, expected.distance);
