@@ -67,7 +67,8 @@ Numbers numbers_of(JobConfig& jobs) {
           {"/jobs/queued", {&jobs.queued, 1, 100'000}},
           {"/jobs/kept", {&jobs.kept, 1, 100'000}},
           {"/jobs/sync_seconds", {&jobs.sync_seconds, 0, 3600}},
-          {"/jobs/sync_waiting", {&jobs.sync_waiting, 1, 1000}}};
+          {"/jobs/sync_waiting", {&jobs.sync_waiting, 1, 1000}},
+          {"/jobs/simplify_seconds", {&jobs.simplify_seconds, 1, 86400}}};
 }
 
 Numbers numbers_of(HistoryConfig& history) {

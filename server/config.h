@@ -64,6 +64,8 @@ struct JobConfig {
   std::int64_t sync_seconds =
       60;                         // how long a request waits for its job before it is told where to ask later
   std::int64_t sync_waiting = 4;  // requests that may wait so; others are told at once
+  /// After which a simplification comes to an end with the best result so far; no request may ask for more.
+  std::int64_t simplify_seconds = 3600;
   friend bool operator==(const JobConfig&, const JobConfig&) = default;
 };
 

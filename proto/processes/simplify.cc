@@ -24,29 +24,38 @@ constexpr std::string_view kInputs = R"({
 "schema":{"type":"string","pattern":"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$"}},
 "effort":{"title":"Effort","description":"How much time to spend on fewer vertices: balanced takes about three times as long as fast, thorough ten times, best fifty times or until maxSeconds.","minOccurs":0,"maxOccurs":1,
 "schema":{"type":"string","enum":["fast","balanced","thorough","best"],"default":"balanced"}},
+"elevations":{"title":"Elevations","description":"source: vertices have the elevations of the samples where they stand. fit: theirs may be any within the tolerance, which takes a fifth to a third fewer vertices; hull corners, what is protected and plateaus that are kept flat keep their own.","minOccurs":0,"maxOccurs":1,
+"schema":{"type":"string","enum":["source","fit"],"default":"source"}},
+"keepFlat":{"title":"Plateaus stay flat","description":"Water and other plateaus are not tilted within the tolerance: samples that are level with all their neighbours lie on the result exactly, where at least so many of them hang together; true: 64 of them.","minOccurs":0,"maxOccurs":1,
+"schema":{"oneOf":[{"type":"boolean"},{"type":"integer","minimum":1,"maximum":9007199254740992}],"default":false}},
+"against":{"title":"Against","description":"What stays within the tolerance. samples: every source sample. surface: every point of the surface that the samples make, triangulated; it takes more vertices and several times as long.","minOccurs":0,"maxOccurs":1,
+"schema":{"type":"string","enum":["samples","surface"],"default":"samples"}},
 "protect":{"title":"What stays","description":"Vertices that stay whatever they are worth: one item or an array of them, each a vertex id, a GeoJSON Polygon or MultiPolygon in the TIN's CRS (the vertices inside it), or the word border (those on the outline).","minOccurs":0,"maxOccurs":1,
 "schema":{"oneOf":[{"type":"integer","minimum":1},{"type":"string","enum":["border"]},{"type":"object"},{"type":"array","items":{"oneOf":[{"type":"integer","minimum":1},{"type":"string","enum":["border"]},{"type":"object"}]}}]}},
-"maxSeconds":{"title":"Time budget","description":"Once so much time is spent, the best result so far is certified and returned; the tolerance holds in any case, so that a first result may take longer.","minOccurs":0,"maxOccurs":1,
+"maxSeconds":{"title":"Time budget","description":"Once so much time is spent, the best result so far is certified and returned; the tolerance holds in any case, so that a first result may take longer. Without it, and at most, what the server's configuration allows.","minOccurs":0,"maxOccurs":1,
 "schema":{"type":"number","minimum":0.001,"maximum":86400}},
-"seed":{"title":"Seed","description":"Chooses the way of the search. Without maxSeconds the same inputs give the same result.","minOccurs":0,"maxOccurs":1,
+"seed":{"title":"Seed","description":"Chooses the way of the search. The same inputs give the same result, unless time was up.","minOccurs":0,"maxOccurs":1,
 "schema":{"type":"integer","minimum":0,"maximum":9007199254740992,"default":1}}
 })";
 
 constexpr std::string_view kResult = R"({"type":"object",
-"required":["verticesBefore","verticesAfter","maxError","maxErrorAt","maxErrorSample","toleranceMet","editedMeanwhile","rmse","certifiedAgainst","samples","samplesOutOfForce","histogram","seconds","tin","revision"],
+"required":["verticesBefore","verticesAfter","maxError","maxErrorAt","maxErrorSample","toleranceMet","editedMeanwhile","rmse","certifiedAgainst","samples","levelSamples","surfaceCrossings","samplesOutOfForce","outOfTime","histogram","seconds","tin","revision"],
 "properties":{
 "verticesBefore":{"type":"integer","description":"Vertices before"},
 "verticesAfter":{"type":"integer","description":"Vertices after"},
 "maxError":{"type":"number","description":"Largest vertical distance to a source sample, in the TIN's vertical unit"},
 "maxErrorAt":{"type":"array","items":{"type":"number"},"minItems":2,"maxItems":2,"nullable":true,"description":"Where it is, in the TIN's CRS"},
-"maxErrorSample":{"type":"object","nullable":true,"description":"The sample there: its own height, and its place in the source (column and row of a raster, index of points by position); a vertex that somebody made has no place","properties":{"z":{"type":"number"},"column":{"type":"integer"},"row":{"type":"integer"},"index":{"type":"integer"}}},
+"maxErrorSample":{"type":"object","nullable":true,"description":"The sample there: its own height, and its place in the source (column and row of a raster, index of points by position); a vertex that somebody made has no place, nor has a place between samples, whose height is then the surface's","properties":{"z":{"type":"number"},"column":{"type":"integer"},"row":{"type":"integer"},"index":{"type":"integer"}}},
 "toleranceMet":{"type":"boolean","description":"Whether the tolerance holds; false only when maxVertices got in its way"},
 "editedMeanwhile":{"type":"boolean","description":"Whether others edited the TIN while the job worked; their edits stand"},
 "rmse":{"type":"number","description":"Root mean square of the vertical distances"},
 "certifiedAgainst":{"type":"string","enum":["original samples","vertices"],"description":"Original samples: those of the source, with people's edits in the place of the samples that they touched. Vertices: those of the TIN and those that earlier simplifications took away, where no source is kept"},
 "samples":{"type":"integer","description":"How many samples that were"},
+"levelSamples":{"type":"integer","description":"How many of them lie on plateaus that were kept flat"},
+"surfaceCrossings":{"type":"integer","description":"How many crossings with edges of the samples' surface were measured besides"},
 "samplesOutOfForce":{"type":"integer","description":"How many samples of the source do not count any more, because people edited there"},
 "histogram":{"type":"object","description":"How many samples have which error: counts[i] of them in [i, i + 1) times bin, all larger ones in the last","properties":{"bin":{"type":"number"},"counts":{"type":"array","items":{"type":"integer"}}}},
+"outOfTime":{"type":"boolean","description":"Whether a time budget ended the search"},
 "seconds":{"type":"number","description":"Time the work took"},
 "tin":{"type":"string","description":"Id of the simplified TIN"},
 "revision":{"type":"integer","description":"Its revision"}
@@ -151,6 +160,15 @@ Result<void> read_protect(const Object& inputs, SimplifyProtect& protect) {
   return {};
 }
 
+Result<std::uint64_t> read_keep_flat(const Value& value) {
+  if (const auto wanted = value.boolean()) return *wanted ? kPlateauSamples : 0;
+  const auto count = value.integer(1, kMaxCount);
+  if (count) return static_cast<std::uint64_t>(*count);
+  if (count.error().code == Code::kMalformed)
+    return value.error(Code::kMalformed, "keepFlat is true, false or a number of samples");
+  return count.error();
+}
+
 Result<void> read_means(const Object& inputs, SimplifyInputs& request) {
   if (const auto member = inputs.find("effort")) {
     const auto word = member->string(kMaxWord);
@@ -158,6 +176,25 @@ Result<void> read_means(const Object& inputs, SimplifyInputs& request) {
     const auto effort = parse_effort(*word, member->pointer());
     if (!effort) return effort.error();
     request.effort = *effort;
+  }
+  if (const auto member = inputs.find("elevations")) {
+    const auto word = member->string(kMaxWord);
+    if (!word) return word.error();
+    const auto elevations = parse_elevations(*word, member->pointer());
+    if (!elevations) return elevations.error();
+    request.elevations = *elevations;
+  }
+  if (const auto member = inputs.find("against")) {
+    const auto word = member->string(kMaxWord);
+    if (!word) return word.error();
+    const auto against = parse_against(*word, member->pointer());
+    if (!against) return against.error();
+    request.against = *against;
+  }
+  if (const auto member = inputs.find("keepFlat")) {
+    const auto flat = read_keep_flat(*member);
+    if (!flat) return flat.error();
+    request.keep_flat = *flat;
   }
   if (const auto member = inputs.find("maxSeconds")) {
     const auto seconds = member->number();
@@ -193,6 +230,18 @@ Result<SimplifyEffort> parse_effort(std::string_view text, std::string where) {
   return error(Code::kInvalidValue, "effort is fast, balanced, thorough or best", std::move(where));
 }
 
+Result<SimplifyElevations> parse_elevations(std::string_view text, std::string where) {
+  if (text == "source") return SimplifyElevations::kSource;
+  if (text == "fit") return SimplifyElevations::kFit;
+  return error(Code::kInvalidValue, "elevations is source or fit", std::move(where));
+}
+
+Result<SimplifyAgainst> parse_against(std::string_view text, std::string where) {
+  if (text == "samples") return SimplifyAgainst::kSamples;
+  if (text == "surface") return SimplifyAgainst::kSurface;
+  return error(Code::kInvalidValue, "against is samples or surface", std::move(where));
+}
+
 const ProcessDescription& simplify_description() {
   static constexpr ProcessDescription description{
       "simplify",
@@ -207,7 +256,8 @@ const ProcessDescription& simplify_description() {
 
 Result<SimplifyInputs> read_simplify_inputs(const Value& value) {
   const auto inputs =
-      value.object({"tin", "tolerance", "maxVertices", "as", "effort", "maxSeconds", "seed", "protect"});
+      value.object({"tin", "tolerance", "maxVertices", "as", "effort", "elevations", "keepFlat", "against", "maxSeconds",
+                    "seed", "protect"});
   if (!inputs) return inputs.error();
   SimplifyInputs request;
   auto tin = read_tin_id(*inputs, "tin");
@@ -235,10 +285,13 @@ void write_simplify_report(JsonWriter& json, const SimplifyResults& results) {
   json.key("rmse").number(results.rmse);
   json.key("certifiedAgainst").string(results.against_source ? "original samples" : "vertices");
   json.key("samples").integer(results.samples);
+  json.key("levelSamples").integer(results.level);
+  json.key("surfaceCrossings").integer(results.crossings);
   json.key("samplesOutOfForce").integer(results.out_of_force);
   json.key("histogram").begin_object().key("bin").number(results.histogram_bin).key("counts").begin_array();
   for (const std::uint64_t count : results.histogram) json.integer(count);
   json.end_array().end_object();
+  json.key("outOfTime").boolean(results.out_of_time);
   json.key("seconds").number(results.seconds);
 }
 

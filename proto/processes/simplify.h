@@ -19,6 +19,17 @@ enum class SimplifyEffort { kFast, kBalanced, kThorough, kBest };
 /// "fast", "balanced", "thorough" or "best". Errors: kInvalidValue.
 tin::base::Result<SimplifyEffort> parse_effort(std::string_view text, std::string where);
 
+/// Which heights vertices have. Errors: kInvalidValue.
+enum class SimplifyElevations { kSource, kFit };
+tin::base::Result<SimplifyElevations> parse_elevations(std::string_view text, std::string where);
+
+/// What the tolerance is held against. Errors: kInvalidValue.
+enum class SimplifyAgainst { kSamples, kSurface };
+tin::base::Result<SimplifyAgainst> parse_against(std::string_view text, std::string where);
+
+/// How many level samples make a plateau, when a request does not say.
+inline constexpr std::uint64_t kPlateauSamples = 64;
+
 /// Which vertices stay.
 struct SimplifyProtect {
   using Ring = std::vector<Position2>;  // closed or not
@@ -38,6 +49,9 @@ struct SimplifyInputs {
   std::optional<double> tolerance;            // >= 0, in the TIN's vertical unit
   std::optional<std::uint64_t> max_vertices;  // >= 3
   SimplifyEffort effort = SimplifyEffort::kBalanced;
+  SimplifyElevations elevations = SimplifyElevations::kSource;
+  SimplifyAgainst against = SimplifyAgainst::kSamples;
+  std::uint64_t keep_flat = 0;  // samples of a plateau; 0: plateaus may be tilted
   std::optional<double> max_seconds;  // 0.001 to 86400
   std::uint64_t seed = 1;
   SimplifyProtect protect;
@@ -45,10 +59,10 @@ struct SimplifyInputs {
 };
 tin::base::Result<SimplifyInputs> read_simplify_inputs(const Value& inputs);
 
-/// The sample that is furthest from the result.
+/// The sample that is furthest from the result, or a place between samples.
 struct SimplifyWorst {
   double x = 0, y = 0;  // in the TIN's CRS
-  double z = 0;         // its own height
+  double z = 0;         // its own height; the surface's between samples
   double error = 0;
   std::optional<std::uint64_t> column, row;  // of a source raster
   std::optional<std::uint64_t> index;        // of source points, by position from 0
@@ -64,6 +78,9 @@ struct SimplifyResults {
   double rmse = 0;
   bool against_source = false;      // else against the vertices that there were
   std::uint64_t samples = 0;        // that it was certified against
+  std::uint64_t level = 0;          // of these, on plateaus that were kept flat
+  std::uint64_t crossings = 0;      // of edges with those of the samples' surface, the same
+  bool out_of_time = false;         // the search was ended by a time budget
   std::uint64_t out_of_force = 0;   // samples of the source that edits put out of force
   double histogram_bin = 0;         // width; the last bin holds all above as well
   std::vector<std::uint64_t> histogram;

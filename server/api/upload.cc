@@ -43,12 +43,14 @@ Result<std::vector<std::uint8_t>> parse_classes(const std::string& text) {
   return classes;
 }
 
-/// What the parameters tolerance and effort ask for, if they are there.
+/// What the parameter tolerance and those that go with it ask for, if it is there.
 Result<std::optional<tin::simplify::Options>> read_simplification(const Request& request) {
-  const auto text = request.query_value("tolerance"), effort = request.query_value("effort");
+  const auto text = request.query_value("tolerance"), effort = request.query_value("effort"),
+             elevations = request.query_value("elevations");
   if (!text) {
-    if (!effort) return std::optional<tin::simplify::Options>();
-    return error(Code::kInvalidValue, "An effort goes with a tolerance.", "query:effort");
+    if (effort) return error(Code::kInvalidValue, "An effort goes with a tolerance.", "query:effort");
+    if (elevations) return error(Code::kInvalidValue, "Elevations go with a tolerance.", "query:elevations");
+    return std::optional<tin::simplify::Options>();
   }
   const auto tolerance = proto::parse_number(*text, "query:tolerance");
   if (!tolerance) return tolerance.error();
@@ -61,6 +63,11 @@ Result<std::optional<tin::simplify::Options>> read_simplification(const Request&
     const auto named = proto::parse_effort(*effort, "query:effort");
     if (!named) return named.error();
     options.effort = processes::effort_of(*named);
+  }
+  if (elevations) {
+    const auto named = proto::parse_elevations(*elevations, "query:elevations");
+    if (!named) return named.error();
+    options.elevations = processes::elevations_of(*named);
   }
   return std::optional(std::move(options));
 }
@@ -116,6 +123,7 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   auto simplify = read_simplification(request);
   if (!simplify) return simplify.error();
   import.simplify = *std::move(simplify);
+  import.max_seconds = static_cast<double>(context.config.jobs.simplify_seconds);
   return import;
 }
 

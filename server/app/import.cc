@@ -1,6 +1,8 @@
 #include "server/app/import.h"
 
 #include "server/app/source.h"
+#include "server/app/thinning.h"
+#include "server/app/time_budget.h"
 
 namespace server::app {
 
@@ -24,7 +26,7 @@ Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, 
   import.placements = {};
   terrain->set_source_grid(import.grid);
   SourceSamples source = import.grid ? raster_source(import) : vertices_as_source(*terrain);
-  return ImportedTerrain{std::move(*terrain), std::move(source), std::nullopt, std::move(import.driver)};
+  return ImportedTerrain{std::move(*terrain), std::move(source), std::nullopt, false, std::move(import.driver)};
 }
 
 /// A raster becomes a simplified terrain without one of all its samples.
@@ -36,7 +38,7 @@ Result<ImportedTerrain> build_from_heights(gdal::Import import, const tin::simpl
   auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress);
   if (!terrain) return terrain.error();
   terrain->set_source_grid(import.grid);
-  return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, std::move(import.driver)};
+  return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, false, std::move(import.driver)};
 }
 
 /// Points are triangulated first: that is how duplicates find each other.
@@ -46,7 +48,7 @@ Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplic
   if (!made) return made.error();
   auto outcome = tin::simplify::simplify(made->terrain, nullptr, {}, options, &progress);
   if (!outcome) return outcome.error();
-  made->terrain = made->terrain.without(outcome->removed);
+  made->terrain = thinned(made->terrain, {std::move(outcome->removed), {}, std::move(outcome->reset)});
   made->report = outcome->report;
   return made;
 }
@@ -62,16 +64,22 @@ std::uint64_t bytes_to_build(const gdal::Import& import) {
          samples * sizeof(double);
 }
 
-Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, Progress& progress) {
+Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, const TimeBudget& budget,
+                              Progress& progress) {
   if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress);
-  if (import.grid) return build_from_heights(std::move(import), *request.simplify, progress);
-  return build_from_points(std::move(import), request.duplicates, *request.simplify, progress);
+  tin::simplify::Options options = *request.simplify;
+  options.out_of_time = budget.question();
+  auto made = import.grid ? build_from_heights(std::move(import), options, progress)
+                          : build_from_points(std::move(import), request.duplicates, options, progress);
+  if (made) made->out_of_time = budget.was_spent();
+  return made;
 }
 
 }  // namespace
 
 Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const ImportRequest& request,
                                        Progress& progress, MemoryBudget* memory) {
+  const TimeBudget budget(request.max_seconds);
   progress.begin_phase(0, 0.3);
   gdal::ImportOptions options = request.options;
   options.heights_only = request.simplify.has_value();
@@ -88,7 +96,7 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
     lease.emplace(std::move(*given));
   }
   progress.begin_phase(0.3, 0.9);
-  auto made = build(*std::move(import), request, progress);
+  auto made = build(*std::move(import), request, budget, progress);
   if (made) progress.begin_phase(0.9, 1);
   return made;
 }

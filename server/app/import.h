@@ -24,6 +24,7 @@ struct ImportRequest {
   /// Makes a simplified TIN at once. Of a raster only the result is ever triangulated; the samples are kept
   /// all the same.
   std::optional<tin::simplify::Options> simplify;
+  std::optional<double> max_seconds;  // after which the best simplification so far is taken
 };
 
 /// What a file becomes.
@@ -31,6 +32,7 @@ struct ImportedTerrain {
   tin::terrain::Terrain terrain;
   tin::terrain::SourceSamples source;
   std::optional<tin::simplify::Report> report;  // if it was simplified
+  bool out_of_time = false;                     // max_seconds ended the search
   std::string driver;                           // GDAL's name of the format
 };
 

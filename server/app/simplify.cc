@@ -1,5 +1,7 @@
 #include "server/app/simplify.h"
 
+#include "server/app/time_budget.h"
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -15,6 +17,8 @@ using tin::terrain::Terrain;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kBytesPerSurfaceSample = 120;  // while its triangulation is built
 
 /// The samples of the source that are in force in a version; none where no source is kept, or no surface is
 /// left.
@@ -60,24 +64,30 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   result.tin = request.tin;
   const auto source = samples_in_force(*request.tin, *seen.terrain, result);
   if (!source) return source.error();
+  std::optional<MemoryBudget::Lease> surface;  // the triangulation of all samples
+  if (request.options.against == tin::simplify::Against::kSurface) {
+    auto held = catalogue.memory().lease(
+        kBytesPerSurfaceSample * (*source ? (*source)->sample_count() : seen.terrain->vertex_count()));
+    if (!held) return held.error();
+    surface.emplace(*std::move(held));
+  }
   progress.begin_phase(0.02, 0.95);
   auto options = request.options;
-  options.threads = std::max(1U, std::thread::hardware_concurrency());
-  if (request.max_seconds) {
-    const auto end = start + std::chrono::duration_cast<Clock::duration>(
-                                 std::chrono::duration<double>(*request.max_seconds));
-    options.out_of_time = [end] { return Clock::now() >= end; };
-  }
+  options.threads = simplify_threads();
+  const TimeBudget budget(request.max_seconds, start);
+  options.out_of_time = budget.question();
   options.protect = protected_positions(*seen.terrain, request.protect);
   auto outcome = tin::simplify::simplify(*seen.terrain, *source ? &**source : nullptr,
                                          seen.terrain->amendments().own(), options, &progress);
   if (!outcome) return outcome.error();
   progress.begin_phase(0.95, 1);
   result.report = outcome->report;
+  result.out_of_time = budget.was_spent();
   if (progress.cancelled()) return error(Code::kCancelled, "Cancelled.");
   const Thinning thinning{std::move(outcome->removed), std::move(outcome->inserted),
                           std::move(outcome->reset)};
   if (request.as) {
+    surface.reset();
     lease.reset();  // what is kept of it is counted by create()
     auto made = create_thinned(catalogue, request, *seen.terrain, thinning);
     if (!made) return made.error();

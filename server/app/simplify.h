@@ -45,6 +45,7 @@ struct Simplified {
   std::shared_ptr<Tin> tin;      // the one that holds the result
   std::uint64_t revision = 0;    // of it
   double seconds = 0;
+  bool out_of_time = false;  // max_seconds ended the search
   /// Others edited the TIN meanwhile: their edits stand, the report speaks of the version that was
   /// simplified.
   bool edited_meanwhile = false;

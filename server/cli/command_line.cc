@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "proto/processes/simplify.h"
 #include "server/cli/check.h"
 #include "server/cli/info.h"
 #include "server/cli/output_file.h"
@@ -53,6 +54,19 @@ CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
                       "Certify and write the best result so far once so much time is spent");
   command->add_option("--effort", arguments.effort, "fast, balanced, thorough or best")
       ->capture_default_str();
+  command
+      ->add_option("--elevations", arguments.elevations,
+                   "source: vertices have those of the samples; fit: any within the tolerance, for fewer vertices")
+      ->capture_default_str();
+  command
+      ->add_option("--against", arguments.against,
+                   "samples: each of them is within the tolerance; surface: so is all of the surface that they make")
+      ->capture_default_str();
+  command
+      ->add_option("--keep-flat", arguments.keep_flat,
+                   "Do not tilt water and other plateaus of at least so many level samples")
+      ->expected(0, 1)
+      ->default_str(std::to_string(proto::kPlateauSamples));
   command->add_option("--seed", arguments.seed, "Chooses the way of the search")->capture_default_str();
   command->add_option("--threads", arguments.threads, "How many threads work; 0: as the processor has")
       ->capture_default_str();

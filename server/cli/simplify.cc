@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kToleranceNotMet = 3;
 
-Result<app::ImportRequest> request_of(const SimplifyArguments& arguments, Clock::time_point start) {
+Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
   if (!arguments.tolerance && !arguments.max_vertices)
     return error(Code::kInvalidValue, "either --tolerance or --max-vertices is needed");
   if (arguments.tolerance && !(std::isfinite(*arguments.tolerance) && *arguments.tolerance >= 0))
@@ -35,19 +35,22 @@ Result<app::ImportRequest> request_of(const SimplifyArguments& arguments, Clock:
     return error(Code::kInvalidValue, "--max-seconds must be greater than 0");
   const auto effort = proto::parse_effort(arguments.effort, "");
   if (!effort) return error(effort.error().code, "--" + effort.error().message);
+  const auto elevations = proto::parse_elevations(arguments.elevations, "");
+  if (!elevations) return error(elevations.error().code, "--" + elevations.error().message);
+  const auto against = proto::parse_against(arguments.against, "");
+  if (!against) return error(against.error().code, "--" + against.error().message);
   tin::simplify::Options options;
   options.tolerance = arguments.tolerance;
   if (arguments.max_vertices) options.max_vertices = static_cast<std::size_t>(*arguments.max_vertices);
   options.effort = api::processes::effort_of(*effort);
+  options.elevations = api::processes::elevations_of(*elevations);
+  options.against = api::processes::against_of(*against);
+  options.keep_flat = static_cast<std::size_t>(arguments.keep_flat);
   options.seed = arguments.seed;
   options.threads = arguments.threads == 0 ? app::simplify_threads() : arguments.threads;
-  if (arguments.max_seconds) {
-    const auto end = start + std::chrono::duration_cast<Clock::duration>(
-                                 std::chrono::duration<double>(*arguments.max_seconds));
-    options.out_of_time = [end] { return Clock::now() >= end; };
-  }
   app::ImportRequest request;
   request.simplify = std::move(options);
+  request.max_seconds = arguments.max_seconds;
   request.options.file_name = std::filesystem::path(arguments.input).filename();
   request.options.crs = arguments.crs;
   request.options.format = arguments.format;
@@ -87,7 +90,7 @@ void print_text(const SimplifyArguments& arguments, const proto::SimplifyResults
 
 int simplify(const SimplifyArguments& arguments) {
   const auto start = Clock::now();
-  const auto request = request_of(arguments, start);
+  const auto request = request_of(arguments);
   if (!request) return fail("", request.error());
   if (auto fine = check_output(arguments.output); !fine) return fail(arguments.output, fine.error());
   tin::base::Progress progress;
@@ -105,6 +108,7 @@ int simplify(const SimplifyArguments& arguments) {
   const app::ImportedTerrain& result = **made;
   auto results = api::processes::results_of(*result.report, result.terrain);
   results.against_source = true;
+  results.out_of_time = result.out_of_time;
   results.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
     print_json(arguments, results);

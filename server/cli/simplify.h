@@ -15,6 +15,9 @@ struct SimplifyArguments {
   std::optional<std::uint64_t> max_vertices;
   std::optional<double> max_seconds;
   std::string effort = "balanced";
+  std::string elevations = "source";
+  std::string against = "samples";
+  std::uint64_t keep_flat = 0;  // samples of a plateau; 0: plateaus may be tilted
   std::uint64_t seed = 1;
   unsigned threads = 0;  // 0: the processor's
   std::string crs;       // in place of the file's

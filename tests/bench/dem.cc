@@ -70,6 +70,18 @@ Dem read_dem(const std::string& path) {
   return dem;
 }
 
+Dem squared(const Dem& dem) {
+  constexpr std::int32_t kParts = 1024;
+  Dem out = dem;
+  auto grid = std::make_shared<SourceGrid>(*dem.grid);
+  grid->dx = kParts;
+  grid->dy = -kParts;
+  grid->x0 = -(grid->width / 2) * grid->dx;
+  grid->y0 = -(grid->height / 2) * grid->dy;
+  out.grid = std::move(grid);
+  return out;
+}
+
 Dem enlarged(const Dem& dem, std::int32_t side) {
   Dem out;
   out.name = dem.name + "-" + std::to_string(side);

@@ -26,6 +26,8 @@ Dem read_dem(const std::string& path);
 /// The same terrain on a raster of `side` by `side` samples over the same ground, interpolated (cubically in each direction) and
 /// rounded to whole heights, with noise of one unit: real terrain at a scale that no file here has.
 Dem enlarged(const Dem& dem, std::int32_t side);
+/// The same heights on pixels as wide as they are high, as peers see them: what is Delaunay depends on it.
+Dem squared(const Dem& dem);
 /// Heights as a picture: 8 bits per sample. Throws std::runtime_error when the file can't be written.
 void write_png(const std::string& path, std::int32_t width, std::int32_t height, const std::vector<std::uint8_t>& grey);
 

@@ -23,7 +23,7 @@ using tin::simplify::Options;
 namespace {
 
 constexpr std::string_view kOptions[] = {"--dem", "--tolerances", "--efforts", "--threads", "--enlarge", "--budget-percent",
-                                         "--peers", "--dump", "--svg", "--error-map", "--seed"};
+                                         "--peers", "--dump", "--svg", "--error-map", "--seed", "--elevations", "--against", "--keep-flat", "--pixels"};
 
 Effort effort_of(const std::string& name) {
   if (name == "fast") return Effort::kFast;
@@ -84,6 +84,9 @@ std::size_t run_ours(const Dem& dem, const Options& options, const std::string& 
   const double asked = options.tolerance.value_or(std::numeric_limits<double>::max());
   JsonLine line("simplify");
   line.add("who", "tinsmith").add("dem", dem.name).add("effort", effort).add("threads", options.threads);
+  line.add("elevations", options.elevations == tin::simplify::Elevations::kFit ? "fit" : "source");
+  line.add("against", options.against == tin::simplify::Against::kSurface ? "surface" : "samples");
+  if (options.keep_flat > 0) line.add("keep_flat", static_cast<double>(options.keep_flat)).add("level", static_cast<double>(chosen->report.level));
   if (options.tolerance) line.add("tolerance", *options.tolerance);
   if (options.max_vertices) line.add("max_vertices", static_cast<double>(*options.max_vertices));
   line.add("wall_s", spent.wall_s).add("cpu_s", spent.cpu_s()).add("peak_mb", static_cast<double>(memory.bytes()) / 1e6);
@@ -124,6 +127,7 @@ int run_simplify(std::span<const std::string> arguments) {
   const Arguments given(arguments, kOptions);
   Dem dem = read_dem(given.text("--dem", ""));
   if (const std::size_t side = given.number("--enlarge", 0); side > 0) dem = enlarged(dem, static_cast<std::int32_t>(side));
+  if (given.text("--pixels", "own") == "square") dem = squared(dem);
   if (const auto path = given.text("--dump", ""); !path.empty()) {
     dump(dem, path);
     return 0;
@@ -131,6 +135,9 @@ int run_simplify(std::span<const std::string> arguments) {
   Options options;
   options.threads = static_cast<unsigned>(given.number("--threads", 1));
   options.seed = given.number("--seed", 1);
+  if (given.text("--elevations", "source") == "fit") options.elevations = tin::simplify::Elevations::kFit;
+  if (given.text("--against", "samples") == "surface") options.against = tin::simplify::Against::kSurface;
+  options.keep_flat = given.number("--keep-flat", 0);
   std::vector<Curve> curves;
   for (const auto& effort : given.list("--efforts", "fast")) {
     options.effort = effort_of(effort);

@@ -53,6 +53,36 @@ TEST(LimitsTest, EditsInARequest) {
   EXPECT_EQ(server.state(), before);
 }
 
+TEST(LimitsTest, SecondsOfASimplification) {
+  TestServer server([](server::Config& config) { config.jobs.simplify_seconds = 5; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(9) + "}").status, 201);
+  const auto ask = [&](const std::string& more) {
+    return server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","tolerance":1)" + more + "}}");
+  };
+  EXPECT_EQ(ask(R"(,"maxSeconds":5)").status, 200);
+  const std::string before = server.state();
+  const RawAnswer refused = ask(R"(,"maxSeconds":5.001)");
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_EQ(Json::parse(refused.body).at("where"), "/inputs/maxSeconds");
+  EXPECT_NE(refused.body.find("at most 5"), std::string::npos) << refused.body;
+  EXPECT_EQ(server.state(), before);
+}
+
+TEST(LimitsTest, SecondsOfASimplificationThatDoesNotSay) {
+  // A bumpy raster that the search never tires of: the limit ends it.
+  TestServer server([](server::Config& config) { config.jobs.simplify_seconds = 1; });
+  std::string grid = "ncols 300\nnrows 300\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  for (int i = 0; i < 90'000; ++i) grid += std::to_string(i * 7919LL % 1009 % 97) + (i % 300 == 299 ? "\n" : " ");
+  ASSERT_EQ(server.upload("/tins?id=t&crs=EPSG:32632", "text/plain", grid).status, 201);
+  const RawAnswer answer = server.post_json("/processes/simplify/execution",
+                                            R"({"inputs":{"tin":"t","tolerance":30,"effort":"best"}})");
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const Json result = Json::parse(answer.body);
+  EXPECT_TRUE(result.at("outOfTime"));
+  EXPECT_TRUE(result.at("toleranceMet"));
+  EXPECT_LE(result.at("maxError"), 30);
+}
+
 TEST(LimitsTest, PositionsInARequest) {
   TestServer server([](server::Config& config) { config.limits.positions_per_request = 5; });
   ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(4) + "}").status, 201);

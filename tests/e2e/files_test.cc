@@ -78,6 +78,29 @@ TEST_F(FilesTest, TheServerComesToTheSameTriangles) {
   EXPECT_EQ(misses.largest > 0, result.at("maxError") > 0);
 }
 
+TEST_F(FilesTest, ElevationsThatFitPlateausAndTheSurfaceAreOptions) {
+  const Dem dem(sample_file("olinda"));
+  const auto report = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"simplify", dem.file.string(), "-t", "8", "-o", path("out.geojson"), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Finished done = tinsmith(words);
+    EXPECT_EQ(done.status, 0) << done.err;
+    std::ifstream file(path("out.geojson"));
+    const Misses misses = compare(dem, Json::parse(file), 8);
+    EXPECT_EQ(misses.beyond + misses.uncovered, 0U);
+    return Json::parse(done.out);
+  };
+  const Json plain = report({});
+  EXPECT_LT(report({"--elevations", "fit"}).at("verticesAfter"), plain.at("verticesAfter"));
+  const Json flat = report({"--keep-flat=4"});
+  EXPECT_GT(flat.at("levelSamples"), 0);
+  EXPECT_EQ(plain.at("levelSamples"), 0);
+  EXPECT_LE(report({"--keep-flat"}).at("levelSamples"), flat.at("levelSamples")) << "plateaus of 64 samples and more";
+  const Json surface = report({"--against", "surface"});
+  EXPECT_GT(surface.at("surfaceCrossings"), 1000);
+  EXPECT_GT(surface.at("verticesAfter"), plain.at("verticesAfter"));
+}
+
 TEST_F(FilesTest, MeshesHoldTheVerticesAndTrianglesOfTheReport) {
   const std::string input = sample_file("olinda");
   const auto lines_with = [&](const std::string& file, const std::string& head) {
@@ -132,6 +155,9 @@ TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
   expect({input, "-o", out, "-t", "nan"}, 1, "--tolerance");
   expect({input, "-o", out, "-t", "much"}, 2, "tolerance");
   expect({input, "-o", out, "-t", "1", "--effort", "most"}, 1, "--effort");
+  expect({input, "-o", out, "-t", "1", "--elevations", "any"}, 1, "--elevations");
+  expect({input, "-o", out, "-t", "1", "--against", "points"}, 1, "--against");
+  expect({input, "-o", out, "-t", "1", "--keep-flat", "some"}, 2, "--keep-flat");
   expect({input, "-t", "1"}, 2, "--output");
   expect({input, "-o", path("out.doc"), "-t", "1"}, 1, ".geojson");
   expect({input, "-o", path("no/such/out.tif"), "-t", "1"}, 1, "No such file");

@@ -85,7 +85,7 @@ TEST_F(SourceTest, AStraightImportEqualsASimplificationOfTheWhole) {
   EXPECT_EQ(digest("straight"), digest("whole"));
   expect_kept(dem, "straight", served_->simplify({{"tin", "straight"}, {"tolerance", 2}}), 2);
   for (const char* query : {"?tolerance=-1", "?tolerance=x", "?effort=fast", "?tolerance=1&effort=most",
-                            "?tolerance=1&effort=best"}) {
+                            "?tolerance=1&effort=best", "?elevations=fit", "?tolerance=1&elevations=any"}) {
     const RawAnswer refused = served_->upload(query, dem.file);
     EXPECT_TRUE(refused.status == 400 || refused.status == 422) << query << refused.status;
   }
@@ -216,6 +216,80 @@ TEST_F(SourceTest, WhatIsProtectedStays) {
   EXPECT_NE(unknown.body.find("/inputs/protect/1"), std::string::npos) << unknown.body;
 }
 
+TEST_F(SourceTest, FittedElevationsLandAreCertifiedAndCanBeUndone) {
+  const Dem dem(sample_file("olinda"));
+  ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);
+  const std::string whole = digest("dem");
+  const Json own = served_->simplify({{"tin", "dem"}, {"tolerance", 6}, {"as", "own"}});
+  const Json fit = served_->simplify({{"tin", "dem"}, {"tolerance", 6}, {"elevations", "fit"}});
+  expect_kept(dem, "dem", fit, 6);
+  EXPECT_LT(fit.at("verticesAfter"), own.at("verticesAfter"));
+  const std::string fitted = digest("dem");
+  served_->kill();
+  start();
+  EXPECT_EQ(digest("dem"), fitted);
+  const auto revert = [&](const Json& result) {
+    const std::string revision = std::to_string(result.at("revision").get<int>());
+    const RawAnswer undone = served_->http().post_json("/tins/dem/revisions/" + revision + "/revert", "{}");
+    EXPECT_EQ(undone.status, 200) << undone.body;
+  };
+  // Once more over the fitted ones, and then both taken back.
+  const Json finer = served_->simplify({{"tin", "dem"}, {"tolerance", 2}, {"elevations", "fit"}});
+  expect_kept(dem, "dem", finer, 2);
+  revert(finer);
+  EXPECT_EQ(digest("dem"), fitted);
+  revert(fit);
+  EXPECT_EQ(digest("dem"), whole);
+  expect_kept(dem, "dem", served_->simplify({{"tin", "dem"}, {"tolerance", 3}}), 3);
+  // By the straight way, too.
+  ASSERT_EQ(served_->upload("?id=straight&tolerance=6&elevations=fit", dem.file).status, 201);
+  const Misses misses = compare(dem, triangles("straight"), 6);
+  EXPECT_EQ(misses.beyond + misses.uncovered, 0U);
+  EXPECT_EQ(digest("straight"), fitted);
+}
+
+TEST_F(SourceTest, APersonsVertexThatWasFittedStaysASampleWithItsOwnElevation) {
+  const Dem dem(sample_file("olinda"));
+  ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);
+  const double x = dem.x(40) + 3, y = dem.y(50) + 5, z = dem.value(40, 50) + 200;
+  served_->edit("dem", Json::array({{{"op", "insert"}, {"x", x}, {"y", y}, {"z", z}}}));
+  for (const int tolerance : {30, 8, 20}) {
+    served_->simplify({{"tin", "dem"}, {"tolerance", tolerance}, {"elevations", "fit"}});
+    const Json at = served_->get("/tins/dem/elevation?x=" + std::to_string(x) + "&y=" + std::to_string(y));
+    EXPECT_NEAR(at.at("z").get<double>(), z, tolerance + 1e-6);
+  }
+}
+
+TEST_F(SourceTest, APlateauStaysFlatAndASurfaceIsKept) {
+  const std::string file = folder_.path() / "lake.asc";
+  std::ofstream out(file);
+  out << "ncols 60\nnrows 50\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n";
+  for (int i = 0; i < 60 * 50; ++i) {
+    const int column = i % 60, row = i / 60;
+    const bool water = std::hypot(column - 30, row - 25) < 12;
+    out << (water ? 100 : 100 + std::lround(20 + 15 * std::sin(column * 0.4) * std::cos(row * 0.3)))
+        << (column == 59 ? '\n' : ' ');
+  }
+  out.close();
+  ASSERT_EQ(served_->upload("?id=lake&crs=EPSG:32725", file).status, 201);
+  const Json flat = served_->simplify({{"tin", "lake"}, {"tolerance", 12}, {"keepFlat", true}, {"as", "flat"}});
+  EXPECT_GT(flat.at("levelSamples"), 250);
+  for (const double away : {0.0, 40.0, 70.0, 95.0}) {
+    const Json at = served_->get("/tins/flat/elevation?x=" + std::to_string(500305 + away) + "&y=5000255");
+    EXPECT_EQ(at.at("z"), 100) << away;
+  }
+  const Json surface = served_->simplify({{"tin", "lake"}, {"tolerance", 4}, {"against", "surface"}, {"as", "surface"}});
+  EXPECT_GT(surface.at("surfaceCrossings"), 100);
+  EXPECT_LE(surface.at("maxError"), 4);
+  // Between the pixels, where samples alone say nothing.
+  for (int i = 0; i < 400; ++i) {
+    const std::string at = "/elevation?x=" + std::to_string(500008 + (i * 37 % 580)) + ".3&y=" +
+                           std::to_string(5000009 + (i * 53 % 480)) + ".7";
+    const double before = served_->get("/tins/lake" + at).at("z"), after = served_->get("/tins/surface" + at).at("z");
+    EXPECT_NEAR(before, after, 4 + 1e-9) << at;
+  }
+}
+
 TEST_F(SourceTest, ATimeBudgetGivesACertifiedResult) {
   const Dem dem(sample_file("olinda"));
   ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);
@@ -223,6 +297,7 @@ TEST_F(SourceTest, ATimeBudgetGivesACertifiedResult) {
       served_->simplify({{"tin", "dem"}, {"tolerance", 3}, {"effort", "best"}, {"maxSeconds", 0.5}});
   expect_kept(dem, "dem", result, 3);
   EXPECT_LT(result.at("seconds"), 10);
+  EXPECT_TRUE(result.at("outOfTime"));
 }
 
 }  // namespace

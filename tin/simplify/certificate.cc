@@ -23,7 +23,7 @@ constexpr SampleIndex kStretch = 1U << 16;
 constexpr SampleIndex kTogether = 1U << 10;
 
 struct Measured {
-  std::size_t samples = 0, on_vertices = 0;
+  std::size_t samples = 0, level = 0, on_vertices = 0;
   double worst_error = 0, squares = 0;
   SampleIndex worst = 0;
   bool within = true;
@@ -61,7 +61,9 @@ class Certifier {
       weights = facet_.weights(sample.at);
       TIN_CHECK(weights.has_value());
     }
-    const auto verdict = facet_.judge(*weights, sample.z, tolerance_);
+    const bool is_level = result_.samples().is_level(sample.sample);
+    if (is_level) ++out.level;
+    const auto verdict = facet_.judge(*weights, sample.z, is_level ? 0 : tolerance_);
     if (is_corner(sample)) ++out.on_vertices;
     out.within = out.within && verdict.within;
     const double bins = bin_ > 0 ? verdict.error / bin_ : 0;
@@ -94,6 +96,7 @@ class Certifier {
 
 void put_together(Certificate& sum, const Measured& part, double& squares, std::size_t& on_vertices) {
   sum.samples += part.samples;
+  sum.level += part.level;
   on_vertices += part.on_vertices;
   squares += part.squares;
   sum.within = sum.within && part.within;
@@ -103,6 +106,50 @@ void put_together(Certificate& sum, const Measured& part, double& squares, std::
   sum.worst = part.worst;
 }
 
+/// Those of the result's edges that are found from triangles begin..end-1, each once.
+struct MeasuredEdges {
+  std::size_t crossings = 0;
+  EdgeScan worst;
+  bool within = true;
+};
+
+MeasuredEdges measure_edges(const Patch& result, std::uint32_t begin, std::uint32_t end, double tolerance) {
+  const mesh::Mesh& mesh = result.mesh();
+  MeasuredEdges out;
+  for (std::uint32_t slot = begin; slot < end; ++slot) {
+    const TriangleSlot t(slot);
+    if (!mesh.is_alive(t) || mesh.is_infinite(t)) continue;
+    for (int i = 0; i < 3; ++i) {
+      const TriangleSlot other = mesh.twin(t, i).triangle();
+      if (other < t && !mesh.is_infinite(other)) continue;
+      const EdgeScan found = result.samples().scan_edge(result.site(mesh.vertex(t, mesh::next3(i))),
+                                                        result.site(mesh.vertex(t, mesh::prev3(i))), tolerance);
+      out.crossings += found.crossings;
+      out.within = out.within && !found.over;
+      if (found.error > out.worst.error) out.worst = found;
+    }
+  }
+  return out;
+}
+
+bool certify_edges(const Patch& result, double tolerance, unsigned threads, const Phase& phase, Certificate& sum) {
+  const std::uint32_t end = result.mesh().triangle_slots();
+  const std::size_t stretches = (std::size_t{end} + kTogether - 1) / kTogether;
+  std::vector<MeasuredEdges> parts(stretches);
+  const bool finished = for_each_tile(stretches, threads, phase, [&](std::size_t i) {
+    const auto begin = static_cast<std::uint32_t>(i * kTogether);
+    parts[i] = measure_edges(result, begin, begin + std::min(end - begin, kTogether), tolerance);
+  });
+  for (const MeasuredEdges& part : parts) {
+    sum.crossings += part.crossings;
+    sum.within = sum.within && part.within;
+    if (part.worst.error <= sum.max_error) continue;
+    sum.max_error = part.worst.error;
+    sum.worst_edge = part.worst;
+  }
+  return finished;
+}
+
 }  // namespace
 
 std::optional<Certificate> certify(const Patch& result, double tolerance, double bin, unsigned threads,
@@ -110,7 +157,8 @@ std::optional<Certificate> certify(const Patch& result, double tolerance, double
   const SampleIndex end = result.samples().end();
   const std::size_t stretches = (std::size_t{end} + kStretch - 1) / kStretch;
   std::vector<Measured> parts(stretches);
-  const bool finished = for_each_tile(stretches, threads, phase, [&](std::size_t i) {
+  const bool has_surface = result.samples().has_surface();
+  const bool finished = for_each_tile(stretches, threads, phase.part(0, has_surface ? 0.5 : 1), [&](std::size_t i) {
     const auto begin = static_cast<SampleIndex>(i * kStretch);
     parts[i] = Certifier(result, tolerance, bin).measure(begin, std::min(end - begin, kStretch) + begin);
   });
@@ -121,6 +169,7 @@ std::optional<Certificate> certify(const Patch& result, double tolerance, double
   for (const Measured& part : parts) put_together(out, part, squares, on_vertices);
   TIN_CHECK(on_vertices == result.mesh().vertex_count());
   out.rmse = std::sqrt(squares / static_cast<double>(out.samples));
+  if (has_surface && !certify_edges(result, tolerance, threads, phase.part(0.5, 1), out)) return std::nullopt;
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "tin/simplify/fast.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "tin/simplify/decimate.h"
@@ -29,6 +30,29 @@ bool holds(const terrain::Box& box, exact::Point p) {
   return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y;
 }
 
+/// How many samples lie in a tile, about.
+std::size_t samples_in(const Samples& samples, const Tiling& tiling, std::size_t tile) {
+  const auto area = [](const terrain::Box& box) {
+    return (static_cast<double>(box.max.x) - box.min.x) * (static_cast<double>(box.max.y) - box.min.y);
+  };
+  const Extent extent = samples.extent();
+  return static_cast<std::size_t>(static_cast<double>(extent.samples) * area(tiling.box(tile)) / std::max(area(extent.box), 1.0));
+}
+
+/// Brings a tile's TIN within the tolerance. By way of a looser tolerance one vertex in fifty to a hundred is spared, which is
+/// worth the time where vertices are few among the samples: there most of it goes into the first scans.
+void thin(Patch& patch, double tolerance, std::size_t samples, const Phase& phase) {
+  constexpr double kLooser = 1.15;
+  constexpr std::size_t kManySamples = 24;  // for each vertex
+  const double looser = tolerance * kLooser;
+  if (looser <= std::numeric_limits<double>::max()) {
+    Greedy(patch, looser).run(Greedy::kNoBudget, phase);
+    if (patch.mesh().vertex_count() * kManySamples < samples) Decimation(patch, looser).run(phase);
+  }
+  Greedy(patch, tolerance).run(Greedy::kNoBudget, phase);
+  Decimation(patch, tolerance).run(phase);
+}
+
 /// The samples of each tile alone, from the corners of their hull and from those in it on that never go.
 bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<const SampleIndex> fixed, double tolerance,
                     unsigned threads, const Phase& phase, std::vector<Pin>& pins) {
@@ -44,10 +68,7 @@ bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<cons
     }
     unite(corners);
     Patch patch(samples, {}, corners);
-    if (patch.mesh().dimension() == 2) {
-      Greedy(patch, tolerance).run(Greedy::kNoBudget, phase.silent());
-      Decimation(patch, tolerance).run(phase.silent());
-    }
+    if (patch.mesh().dimension() == 2) thin(patch, tolerance, samples_in(samples, tiling, tile), phase.silent());
     patch.collect(found[tile]);
     for (Pin& pin : found[tile]) pin.fixed = false;
   });
@@ -108,7 +129,9 @@ std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const S
   auto tin = std::make_unique<Patch>(samples, std::span<const Pin>(), pins, threads);
   std::vector<Pin>().swap(pins);
   const auto on_seam = find_seams(*tin, tiling);
-  const auto suspect = [&on_seam](TriangleSlot t) { return bool{on_seam[t.value()]}; };
+  // An edge of the samples' surface may have called for a sample beyond the tile, so nothing is known of any triangle.
+  const bool all = samples.has_surface();
+  const auto suspect = [&on_seam, all](TriangleSlot t) { return all || on_seam[t.value()]; };
   const Phase rest = phase.part(0.8, 1);
   if (Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5), suspect) == Greedy::End::kCancelled) return nullptr;
   if (!Decimation(*tin, tolerance).run(rest.part(0.5, 1))) return nullptr;

@@ -18,7 +18,7 @@ Greedy::End Greedy::run(std::size_t budget, const Phase& phase, const std::funct
     note_state(worst ? worst->error : 0);
     if (!worst) return End::kTargetMet;
     if (patch_.mesh().vertex_count() >= budget) return End::kBudgetSpent;
-    const auto v = patch_.insert(patch_.samples().site(worst->sample), TriangleSlot(worst->triangle));
+    const auto v = grant(*worst);
     if (!v) continue;
     inserted_.push_back(*v);
     for (const TriangleSlot fresh : patch_.fresh()) queue(fresh);
@@ -40,6 +40,15 @@ bool Greedy::queue_all(const Phase& phase, const std::function<bool(TriangleSlot
     if (patch_.owns(TriangleSlot(i))) queue(TriangleSlot(i));
   }
   return true;
+}
+
+std::optional<mesh::VertexSlot> Greedy::grant(const Candidate& wish) {
+  const TriangleSlot t(wish.triangle);
+  if (const auto v = patch_.insert(patch_.samples().site(wish.sample), t)) return v;
+  if (!patch_.samples().has_surface()) return std::nullopt;
+  // An edge of the samples' surface, whose nearer end is a vertex.
+  const Scan again = patch_.scan(t, target_, Depth::kWorst);
+  return again.other == kNoSample ? std::nullopt : patch_.insert(patch_.samples().site(again.other), t);
 }
 
 void Greedy::queue(TriangleSlot t) {

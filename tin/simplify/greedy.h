@@ -41,9 +41,9 @@ class Greedy {
       return a.error != b.error ? a.error < b.error : a.sample > b.sample;
     }
   };
-  static constexpr SampleIndex kNoSample = std::numeric_limits<SampleIndex>::max();
 
   bool queue_all(const Phase& phase, const std::function<bool(mesh::TriangleSlot)>& suspect);
+  std::optional<mesh::VertexSlot> grant(const Candidate& wish);
   void queue(mesh::TriangleSlot t);
   std::optional<Candidate> take_worst();
   void note_state(double error);

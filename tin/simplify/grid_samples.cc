@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "tin/simplify/narrowing.h"
 #include "tin/simplify/ranking.h"
 #include "tin/simplify/spans.h"
 #include "tin/simplify/whole_scan.h"
@@ -50,6 +51,31 @@ std::pair<std::int32_t, std::int32_t> inside(std::int64_t low, std::int64_t high
           static_cast<std::int32_t>(std::clamp<std::int64_t>(floor_div(high - origin), -1, count - 1))};
 }
 
+/// narrow() on a raster: over each row the weight of `a` and what the others make up are affine functions of the column. Heights
+/// are those of the cells (`z_at`, NaN where there is none), `scale` times the corners'.
+template <class ZAt>
+void narrow_on_cells(const Site& a, const Site& b, const Site& c, double tolerance, double scale, const ZAt& z_at,
+                     Heights& heights) {
+  const double bx = b.column - a.column, by = b.row - a.row, cx = c.column - a.column, cy = c.row - a.row;
+  const double turn = bx * cy - by * cx, area = std::abs(turn), sign = turn < 0 ? -1 : 1;
+  const double base = a.z * scale, rise_b = sign * (b.z * scale - base), rise_c = sign * (c.z * scale - base);
+  // As if `a` were at height 0 and all others that much lower.
+  const double weight_x = sign * (by - cy), weight_y = sign * (cx - bx);
+  const double rest_x = rise_b * cy - rise_c * by, rest_y = rise_c * bx - rise_b * cx;
+  Narrowing narrowing(area, tolerance * scale);
+  visit_spans(cell_of(a), cell_of(b), cell_of(c), [&](std::int32_t row, std::int32_t first, std::int32_t last) {
+    const double y = row - a.row, x = first - a.column;
+    double own = area + x * weight_x + y * weight_y, rest = x * rest_x + y * rest_y + base * (area - own);
+    const double rest_step = rest_x - base * weight_x;
+    for (std::int32_t column = first; column <= last; ++column, own += weight_x, rest += rest_step) {
+      const double z = z_at(column, row);
+      if (z == z) narrowing.take(own, rest, z);
+    }
+    return narrowing.any();
+  });
+  narrowing.narrow(heights, scale);
+}
+
 }  // namespace
 
 GridSamples::GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
@@ -66,29 +92,57 @@ Scan GridSamples::scan(const Site& a, const Site& b, const Site& c, double toler
   return found;
 }
 
-/// A corner is no cell centre (someone moved or added it): each cell near is asked on the lattice.
-Scan GridSamples::scan_between_cells(const Site& a, const Site& b, const Site& c, double tolerance,
-                                     Depth depth) const {
-  const Facet facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z});
+void GridSamples::narrow(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const {
+  if (a.column >= 0 && b.column >= 0 && c.column >= 0) {
+    narrow_cells(a, b, c, tolerance, heights);
+  } else {
+    narrow_between_cells(a, b, c, tolerance, heights);
+  }
+  if (!others_.empty()) others_.narrow(a, b, c, tolerance, heights);
+}
+
+/// A corner is no cell centre (someone moved or added it): each cell near is asked on the lattice. Calls visit(cell, position, height)
+/// until it returns false.
+template <class Visit>
+void GridSamples::visit_between_cells(const Site& a, const Site& b, const Site& c, const Visit& visit) const {
   const std::array<Point, 3> corners{a.at, b.at, c.at};
   const auto [low_y, high_y] = std::minmax({a.at.y, b.at.y, c.at.y});
   const auto rows = widened((static_cast<double>(low_y) - grid_.y0) / grid_.dy,
                             (static_cast<double>(high_y) - grid_.y0) / grid_.dy, grid_.height);
-  Scan found;
   for (std::int32_t row = rows.first; row <= rows.second && !cancelled(); ++row) {
     const auto [low_x, high_x] = cut(corners, grid_.centre(0, row).y);
     if (low_x > high_x) continue;
     const auto columns = widened((low_x - grid_.x0) / grid_.dx, (high_x - grid_.x0) / grid_.dx, grid_.width);
     for (std::int32_t column = columns.first; column <= columns.second; ++column) {
-      const auto weights = facet.weights(grid_.centre(column, row));
-      const auto z = weights ? height(index(column, row)) : std::nullopt;
-      if (!z) continue;
-      const auto verdict = facet.judge(*weights, *z, tolerance);
-      keep_worse(found, {verdict.error, index(column, row), !verdict.within});
-      if (found.over && depth == Depth::kFirstOver) return found;
+      const SampleIndex cell = index(column, row);
+      const auto z = height(cell);
+      if (z && !visit(cell, grid_.centre(column, row), *z)) return;
     }
   }
+}
+
+Scan GridSamples::scan_between_cells(const Site& a, const Site& b, const Site& c, double tolerance,
+                                     Depth depth) const {
+  const Facet facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z});
+  Scan found;
+  visit_between_cells(a, b, c, [&](SampleIndex cell, Point at, double z) {
+    const auto weights = facet.weights(at);
+    if (!weights) return true;
+    const auto verdict = facet.judge(*weights, z, tolerance);
+    keep_worse(found, {verdict.error, cell, !verdict.within});
+    return !(found.over && depth == Depth::kFirstOver);
+  });
   return found;
+}
+
+void GridSamples::narrow_between_cells(const Site& a, const Site& b, const Site& c, double tolerance,
+                                       Heights& heights) const {
+  LatticeNarrowing narrowing(a, b, c, tolerance);
+  visit_between_cells(a, b, c, [&](SampleIndex, Point at, double z) {
+    narrowing.take(at, z);
+    return true;
+  });
+  narrowing.narrow(heights);
 }
 
 Site GridSamples::site(SampleIndex sample) const {
@@ -170,12 +224,13 @@ bool WholeGridSamples::can_hold(const terrain::SourceGrid& grid, int shift, doub
   return shift <= kMostShift && height < kMostHeight && cells < 0x1p+29 && 8 * height * cells < 0x1p+61;
 }
 
-WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest,
+WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
                                    std::vector<Facet::Corner> others, const base::Progress* progress)
     : GridSamples(grid, std::move(others), progress),
       shift_(shift),
       scale_(std::ldexp(1.0, shift)),
       largest_(std::ldexp(largest, shift)),
+      any_height_(any_height),
       heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid) {}
 
 Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
@@ -184,7 +239,7 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
                      cy = c.row - a.row;
   const std::int64_t turn = bx * cy - by * cx;
   const std::int64_t sign = turn < 0 ? -1 : 1, area = sign * turn;
-  if (area == 1) return {};  // no other sample lies in it
+  if (area == 1 && !any_height_) return {};  // no other sample lies in it
   const std::int64_t base = whole(a.z), rise_b = sign * (whole(b.z) - base),
                      rise_c = sign * (whole(c.z) - base);
   // Over cell (x, y), counted from a: area * (interpolated - z) = area * (base - z) + x * slope_x + y *
@@ -202,6 +257,14 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
   const bool doubtful = std::abs(distance - limit) <= 0x1p-48 * limit;
   const bool over = doubtful ? worst.distance > floor_product(tolerance, shift_, area) : distance > limit;
   return {distance / (static_cast<double>(area) * scale_), worst.at, over};
+}
+
+void WholeGridSamples::narrow_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const {
+  const auto z_at = [this](std::int32_t column, std::int32_t row) {
+    const std::int32_t z = heights_[index(column, row)];
+    return z == WholeHeights::kVoid ? std::numeric_limits<double>::quiet_NaN() : z;
+  };
+  narrow_on_cells(a, b, c, tolerance, scale_, z_at, heights);
 }
 
 double WholeGridSamples::height_or_nan(SampleIndex cell) const {
@@ -249,6 +312,11 @@ Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, do
   if (worst - limit > slack) return {worst / area, at, true};
   if (worst - limit > -slack) return judge_all(a, b, c, tolerance);
   return {worst / area, at, false};
+}
+
+void RealGridSamples::narrow_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const {
+  const auto z_at = [this](std::int32_t column, std::int32_t row) { return heights_[index(column, row)]; };
+  narrow_on_cells(a, b, c, tolerance, 1, z_at, heights);
 }
 
 /// The same, each cell judged exactly.

@@ -22,6 +22,7 @@ struct CellSample {
 class GridSamples : public Samples {
  public:
   Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  void narrow(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override;
   Site site(SampleIndex sample) const override;
   void sites(SampleIndex begin, SampleIndex end, std::vector<Site>& out) const override;
   exact::Point position(SampleIndex sample) const override;
@@ -31,6 +32,7 @@ class GridSamples : public Samples {
     return sample < cell_count() ? height(sample).has_value() : others_.exists(sample);
   }
   std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const override;
+  bool has_neighbours() const override { return others_.empty(); }
   Extent extent() const override;
   void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 
@@ -41,6 +43,8 @@ class GridSamples : public Samples {
   /// Scans the cells of a triangle whose corners are cell centres.
   virtual Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                           Depth depth) const = 0;
+  /// What narrow() does, for corners that are cell centres.
+  virtual void narrow_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const = 0;
   /// The height of a cell's sample; NaN where there is none.
   virtual double height_or_nan(SampleIndex cell) const = 0;
   std::optional<double> height(SampleIndex cell) const {
@@ -62,6 +66,9 @@ class GridSamples : public Samples {
 
  private:
   Scan scan_between_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const;
+  void narrow_between_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const;
+  template <class Visit>
+  void visit_between_cells(const Site& a, const Site& b, const Site& c, const Visit& visit) const;
 
   const terrain::SourceGrid& grid_;
   PointSamples others_;
@@ -71,15 +78,17 @@ class GridSamples : public Samples {
 /// Heights that are whole multiples of 2^-shift: scans take integers only and are exact by themselves.
 class WholeGridSamples final : public GridSamples {
  public:
-  /// Whether integers are wide enough for such heights, of absolute values up to `largest`.
+  /// Whether integers are wide enough for such heights of samples and corners, of absolute values up to `largest`.
   static bool can_hold(const terrain::SourceGrid& grid, int shift, double largest);
 
   /// Requires: can_hold().
-  WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, std::vector<Facet::Corner> others,
-                   const base::Progress* progress);
+  WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
+                   std::vector<Facet::Corner> others, const base::Progress* progress);
   void put(const CellSample& sample) {
     heights_[index(sample.column, sample.row)] = static_cast<std::int32_t>(whole(sample.z));
   }
+  double fineness() const override { return 1 / scale_; }
+  double most() const override { return largest_ / scale_; }
 
  private:
   static constexpr int kMostShift = 16;
@@ -87,10 +96,12 @@ class WholeGridSamples final : public GridSamples {
 
   std::int64_t whole(double z) const { return static_cast<std::int64_t>(z * scale_); }
   Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  void narrow_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override;
   double height_or_nan(SampleIndex cell) const override;
 
   int shift_;
-  double scale_, largest_;  // 2^shift; the largest absolute height, times that
+  double scale_, largest_;  // 2^shift; the largest absolute height of a sample or corner, times that
+  bool any_height_;         // corners need not be samples
   std::vector<std::int32_t> heights_;
 };
 
@@ -99,6 +110,7 @@ class RealGridSamples final : public GridSamples {
  public:
   /// Whether no intermediate result of a scan overflows.
   static bool can_hold(double largest) { return largest <= kMostHeight; }
+  double most() const override { return kMostHeight; }
 
   /// Requires: can_hold().
   RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
@@ -109,6 +121,7 @@ class RealGridSamples final : public GridSamples {
   static constexpr double kMostHeight = 0x1p+400;
 
   Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  void narrow_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override;
   Scan judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const;
   double height_or_nan(SampleIndex cell) const override;
 

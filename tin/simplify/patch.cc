@@ -66,7 +66,11 @@ std::optional<VertexSlot> Patch::insert(const Site& site, TriangleSlot near) {
 }
 
 bool Patch::is_removable(VertexSlot v) const {
-  if (is_fixed(v) || !owns(v) || mesh_.dimension() < 2) return false;
+  return !is_fixed(v) && has_star(v);
+}
+
+bool Patch::has_star(VertexSlot v) const {
+  if (!owns(v) || mesh_.dimension() < 2) return false;
   if (owner_.first == 1) return true;
   const TriangleSlot first = mesh_.triangle_at(v);
   TriangleSlot t = first;
@@ -84,6 +88,18 @@ bool Patch::remove(VertexSlot v) {
     for (const VertexSlot corner : mesh_.triangle(t).vertices) unsettle(corner);
   }
   return true;
+}
+
+void Patch::set_height(VertexSlot v, double z) {
+  sites_[v.value()].z = z;
+  fresh_.clear();
+  const TriangleSlot first = mesh_.triangle_at(v);
+  TriangleSlot t = first;
+  do {
+    fresh_.push_back(t);
+    for (const VertexSlot corner : mesh_.triangle(t).vertices) unsettle(corner);
+    t = mesh_.twin(t, mesh::next3(mesh_.index_of(t, v))).triangle();
+  } while (t != first);
 }
 
 void Patch::collect(std::vector<Pin>& out) const {

@@ -55,7 +55,11 @@ class Patch {
   bool is_removable(mesh::VertexSlot v) const;
   /// False, and no change, when only collinear vertices would be left. Requires: is_removable(v).
   bool remove(mesh::VertexSlot v);
-  /// Triangles made by the last change, infinite ones among them.
+  /// Gives a vertex another height. Requires: its star is the patch's own.
+  void set_height(mesh::VertexSlot v, double z);
+  /// Whether all triangles at an alive, owned vertex are the patch's own, so that what it does changes no others.
+  bool has_star(mesh::VertexSlot v) const;
+  /// Triangles made or bent by the last change, infinite ones among them.
   std::span<const mesh::TriangleSlot> fresh() const { return fresh_; }
 
   /// Asks the samples over a finite triangle.

@@ -2,19 +2,25 @@
 
 #include <algorithm>
 
+#include "tin/simplify/narrowing.h"
 #include "tin/simplify/ranking.h"
 
 namespace tin::simplify {
 
 using exact::Point;
 
-struct PointSamples::Query {
+/// What a triangle covers.
+struct PointSamples::Ground {
   std::array<Point, 3> corners;  // counter-clockwise
   Box box;
-  Facet facet;
-  double tolerance;
-  Depth depth;
-  Scan found;
+
+  Ground(const Site& a, const Site& b, const Site& c) {
+    const bool left = exact::orientation(a.at, b.at, c.at) > 0;
+    corners = {a.at, left ? b.at : c.at, left ? c.at : b.at};
+    const auto [low_x, high_x] = std::minmax({a.at.x, b.at.x, c.at.x});
+    const auto [low_y, high_y] = std::minmax({a.at.y, b.at.y, c.at.y});
+    box = {{low_x, low_y}, {high_x, high_y}};
+  }
 };
 
 PointSamples::PointSamples(std::vector<Facet::Corner> samples, SampleIndex first,
@@ -49,47 +55,49 @@ void PointSamples::build(std::size_t node, std::size_t begin, std::size_t end) {
 
 Scan PointSamples::scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const {
   if (samples_.empty()) return {};
-  const bool left = exact::orientation(a.at, b.at, c.at) > 0;
-  const auto [low_x, high_x] = std::minmax({a.at.x, b.at.x, c.at.x});
-  const auto [low_y, high_y] = std::minmax({a.at.y, b.at.y, c.at.y});
-  Query query{{a.at, left ? b.at : c.at, left ? c.at : b.at},
-              {{low_x, low_y}, {high_x, high_y}},
-              Facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z}),
-              tolerance,
-              depth,
-              {}};
-  visit(query, 0, 0, samples_.size());
-  return query.found;
+  const Facet facet({a.at, a.z}, {b.at, b.z}, {c.at, c.z});
+  Scan found;
+  visit(Ground(a, b, c), 0, 0, samples_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto weights = facet.weights(samples_[i].at);
+      if (!weights) continue;
+      const auto verdict = facet.judge(*weights, samples_[i].z, tolerance);
+      keep_worse(found, {verdict.error, first_ + static_cast<SampleIndex>(i), !verdict.within});
+      if (found.over && depth == Depth::kFirstOver) return false;
+    }
+    return true;
+  });
+  return found;
 }
 
-/// Goes through the samples of a node; false: the answer is known.
-bool PointSamples::visit(Query& query, std::size_t node, std::size_t begin, std::size_t end) const {
+void PointSamples::narrow(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const {
+  if (samples_.empty()) return;
+  LatticeNarrowing narrowing(a, b, c, tolerance);
+  visit(Ground(a, b, c), 0, 0, samples_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) narrowing.take(samples_[i].at, samples_[i].z);
+    return narrowing.any();
+  });
+  narrowing.narrow(heights);
+}
+
+/// Calls leaf(begin, end) for the leaves of a node that the triangle may meet, until it returns false: the answer is known.
+template <class Leaf>
+bool PointSamples::visit(const Ground& ground, std::size_t node, std::size_t begin, std::size_t end, const Leaf& leaf) const {
   const Box& box = boxes_[node];
-  if (box.low.x > query.box.high.x || box.low.y > query.box.high.y || box.high.x < query.box.low.x ||
-      box.high.y < query.box.low.y) {
+  if (box.low.x > ground.box.high.x || box.low.y > ground.box.high.y || box.high.x < ground.box.low.x ||
+      box.high.y < ground.box.low.y) {
     return true;
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    const Point from = query.corners[i], to = query.corners[i == 2 ? 0 : i + 1];
+    const Point from = ground.corners[i], to = ground.corners[i == 2 ? 0 : i + 1];
     // The corner of the box that is furthest to the left of the side.
     const Point furthest{to.y > from.y ? box.low.x : box.high.x, to.x > from.x ? box.high.y : box.low.y};
     if (exact::orientation(from, to, furthest) < 0) return true;
   }
-  if (end - begin <= kLeaf) return visit_leaf(query, begin, end);
+  if (end - begin <= kLeaf) return leaf(begin, end);
   if (progress_ != nullptr && progress_->cancelled()) return false;
   const std::size_t middle = begin + (end - begin) / 2;
-  return visit(query, 2 * node + 1, begin, middle) && visit(query, 2 * node + 2, middle, end);
-}
-
-bool PointSamples::visit_leaf(Query& query, std::size_t begin, std::size_t end) const {
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto weights = query.facet.weights(samples_[i].at);
-    if (!weights) continue;
-    const auto verdict = query.facet.judge(*weights, samples_[i].z, query.tolerance);
-    keep_worse(query.found, {verdict.error, first_ + static_cast<SampleIndex>(i), !verdict.within});
-    if (query.found.over && query.depth == Depth::kFirstOver) return false;
-  }
-  return true;
+  return visit(ground, 2 * node + 1, begin, middle, leaf) && visit(ground, 2 * node + 2, middle, end, leaf);
 }
 
 Site PointSamples::site(SampleIndex sample) const {

@@ -17,12 +17,14 @@ class PointSamples final : public Samples {
   PointSamples(std::vector<Facet::Corner> samples, SampleIndex first, const base::Progress* progress);
 
   Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
+  void narrow(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override;
   Site site(SampleIndex sample) const override;
   exact::Point position(SampleIndex sample) const override { return samples_[sample - first_].at; }
   std::optional<SampleIndex> find(exact::Point p) const override;
   SampleIndex end() const override { return first_ + static_cast<SampleIndex>(samples_.size()); }
   bool exists(SampleIndex sample) const override { return sample >= first_ && sample < end(); }
   std::optional<SampleIndex> neighbour(SampleIndex, std::int32_t, std::int32_t) const override { return std::nullopt; }
+  bool has_neighbours() const override { return false; }
   Extent extent() const override;
   void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 
@@ -32,12 +34,12 @@ class PointSamples final : public Samples {
   struct Box {
     exact::Point low, high;
   };
-  struct Query;
+  struct Ground;
   void build(std::size_t node, std::size_t begin, std::size_t end);
-  bool visit(Query& query, std::size_t node, std::size_t begin, std::size_t end) const;
+  template <class Leaf>
+  bool visit(const Ground& ground, std::size_t node, std::size_t begin, std::size_t end, const Leaf& leaf) const;
   template <class Visit>
   void visit_box(const Box& wanted, const Visit& visit) const;
-  bool visit_leaf(Query& query, std::size_t begin, std::size_t end) const;
 
   static constexpr std::size_t kLeaf = 8;
   std::vector<Facet::Corner> samples_;

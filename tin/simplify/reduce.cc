@@ -42,7 +42,9 @@ int rounds_of(Effort effort) {
 class Reduction {
  public:
   Reduction(const Samples& samples, std::span<const SampleIndex> corners, const Options& options)
-      : samples_(samples), corners_(corners), options_(options), random_(options.seed), rounds_(rounds_of(options.effort)) {}
+      : samples_(samples), corners_(corners), options_(options), random_(options.seed), rounds_(rounds_of(options.effort)) {
+    if (options.elevations == Elevations::kFit) rounds_ = std::max(rounds_, 1);  // it is the search that fits
+  }
 
   std::optional<Reduced> run(const Phase& phase) {
     const std::size_t budget = options_.max_vertices.value_or(Greedy::kNoBudget);
@@ -78,7 +80,7 @@ class Reduction {
     const std::uint64_t seed = random_.next();
     return work_in_patches(tin, tiling, options_.threads, phase, [&](Patch& patch, std::size_t tile) {
       const auto stop = [&] { return phase.cancelled() || out_of_time(); };
-      Search(patch, tolerance, Random(seed + tile).next()).run(kTriesPerVertex * patch.owned_count(), stop);
+      Search(patch, tolerance, options_.elevations, Random(seed + tile).next()).run(kTriesPerVertex * patch.owned_count(), stop);
     });
   }
 
@@ -132,10 +134,22 @@ class Reduction {
       }
       if (round + 1 == rounds) break;
       target = next_target(target, error, vertices, budget, round, rounds);
+      take_heights_back(*tin, target);
       if (!repair(tin, target, options_.threads, part.part(0.7, 1))) return std::nullopt;
     }
     tin = std::make_unique<Patch>(samples_, std::span<const Pin>(), best, options_.threads);
     return Reduced{std::move(tin), false, error};
+  }
+
+  /// Vertices whose fitted heights a smaller tolerance does not allow get their samples' own.
+  void take_heights_back(Patch& tin, double tolerance) const {
+    if (options_.elevations == Elevations::kSource) return;
+    for (std::uint32_t i = 1; i < tin.mesh().vertex_slots(); ++i) {
+      const mesh::VertexSlot v(i);
+      if (!tin.mesh().is_alive(v)) continue;
+      const double own = samples_.site(tin.site(v).sample).z, distance = std::abs(tin.site(v).z - own);
+      if (distance > 0 && distance >= tolerance * (1 - 0x1p-40)) tin.set_height(v, own);
+    }
   }
 
   /// At first a little more is asked for than the budget gives, since search will find the rest.

@@ -8,8 +8,11 @@
 
 #include "tin/exact/predicates.h"
 #include "tin/simplify/grid_samples.h"
+#include "tin/simplify/plateaus.h"
 #include "tin/simplify/point_samples.h"
+#include "tin/simplify/source_mesh.h"
 #include "tin/simplify/spans.h"
+#include "tin/simplify/surface_samples.h"
 
 namespace tin::simplify {
 
@@ -103,6 +106,12 @@ std::optional<Survey> survey(const Input& input, const base::Progress* progress)
   return out;
 }
 
+/// Such that whole heights have about 24 bits.
+int fine_shift(double largest) {
+  constexpr int kBits = 24, kMostShift = 12;
+  return std::clamp(kBits - 1 - std::ilogb(std::max(largest, 1.0)), 0, kMostShift);
+}
+
 /// A raster that few samples are left of is not worth scanning cell by cell.
 bool is_worth_scanning(const SourceGrid& grid, const Survey& found) {
   const double cells = static_cast<double>(grid.width) * grid.height;
@@ -162,16 +171,20 @@ std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box
   return out;
 }
 
-std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source,
-                                      std::span<const Placement> own, base::Progress* progress) {
+namespace {
+
+std::unique_ptr<Samples> plain_samples(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own,
+                                       bool any_height, base::Progress* progress) {
   const Input input(terrain, source, own);
   const auto found = survey(input, progress);
   if (!found) return nullptr;
   const SourceGrid* const grid = input.grid();
   if (grid != nullptr && is_worth_scanning(*grid, *found)) {
     auto others = found->others == 0 ? std::vector<Facet::Corner>() : all_points(input, grid, found->others);
-    if (WholeGridSamples::can_hold(*grid, found->shift, found->largest)) {
-      return filled(std::make_unique<WholeGridSamples>(*grid, found->shift, found->largest, std::move(others), progress), input, progress);
+    const int shift = any_height ? std::max(found->shift, fine_shift(found->largest)) : found->shift;
+    const double largest = any_height ? 2 * found->largest : found->largest;
+    if (WholeGridSamples::can_hold(*grid, shift, largest)) {
+      return filled(std::make_unique<WholeGridSamples>(*grid, shift, largest, any_height, std::move(others), progress), input, progress);
     }
     if (RealGridSamples::can_hold(found->largest)) {
       return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), progress), input, progress);
@@ -180,6 +193,25 @@ std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSample
   auto points = std::make_unique<PointSamples>(all_points(input, nullptr, found->on_cells + found->others), 0, progress);
   if (progress != nullptr && progress->cancelled()) return nullptr;
   return points;
+}
+
+bool is_cancelled(const base::Progress* progress) {
+  return progress != nullptr && progress->cancelled();
+}
+
+}  // namespace
+
+std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own,
+                                      const Demands& demands, base::Progress* progress) {
+  auto samples = plain_samples(terrain, source, own, demands.any_height, progress);
+  if (samples == nullptr || (demands.keep_flat == 0 && !demands.surface)) return samples;
+  if (hull_corners(*samples, samples->extent().box).size() < 3) return samples;  // all in a line: all of them stay
+  std::shared_ptr<const SourceMesh> mesh;
+  if (demands.surface || !samples->has_neighbours()) mesh = std::make_shared<const SourceMesh>(*samples, demands.threads);
+  if (is_cancelled(progress)) return nullptr;
+  if (demands.keep_flat > 0) samples = with_plateaus(std::move(samples), mesh.get(), demands.keep_flat, progress);
+  if (demands.surface) samples = with_surface(std::move(samples), mesh);
+  return is_cancelled(progress) ? nullptr : std::move(samples);
 }
 
 }  // namespace tin::simplify

@@ -1,6 +1,7 @@
 #include "tin/simplify/search.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tin/base/check.h"
 #include "tin/delaunay/walk.h"
@@ -19,7 +20,19 @@ constexpr std::uint32_t kBeside = 50;   // percent of the insertions beside the 
 constexpr std::uint32_t kReach = 1;     // how many cells beside
 constexpr std::size_t kBetweenQuestions = 64;  // tries between two looks at whether to stop
 
+constexpr int kHeights = 256;  // so many within the tolerance
+
+/// A power of two; 0 for a tolerance that leaves nothing to fit.
+double step_of(const Samples& samples, double tolerance, Elevations elevations) {
+  if (elevations == Elevations::kSource || !(tolerance > 0x1p-900 && tolerance < 0x1p+900)) return 0;
+  const double step = std::max(samples.fineness(), std::exp2(std::floor(std::log2(tolerance / kHeights))));
+  return step <= tolerance ? step : 0;
+}
+
 }  // namespace
+
+Search::Search(Patch& patch, double tolerance, Elevations elevations, std::uint64_t seed)
+    : patch_(patch), tolerance_(tolerance), step_(step_of(patch.samples(), tolerance, elevations)), random_(seed) {}
 
 void Search::run(std::size_t tries, const std::function<bool()>& stop) {
   if (patch_.mesh().dimension() < 2) return;
@@ -41,8 +54,9 @@ void Search::attempt() {
   const VertexSlot other = random_.below(100) < kPairs ? some_neighbour(v) : kInfinite;
   if (!take_out(v)) return;
   if (other != kInfinite && patch_.is_removable(other) && !take_out(other)) return roll_back();
+  const std::size_t removed = changes_.size();
   look_into_hole();
-  if (recreate(changes_.size())) {
+  if (mend_by_height() || recreate(removed)) {
     remove_around();
   } else {
     roll_back();
@@ -58,7 +72,7 @@ bool Search::take_out(VertexSlot v) {
   const Site site = patch_.site(v);
   if (!patch_.remove(v)) return false;
   near_ = patch_.fresh().front();
-  changes_.push_back({false, v, site});
+  changes_.push_back({Change::Kind::kRemoved, v, site});
   witnesses_.push_back(site);
   hole_.insert(hole_.end(), patch_.fresh().begin(), patch_.fresh().end());
   return true;
@@ -79,7 +93,7 @@ bool Search::recreate(std::size_t removed) {
     std::erase_if(bad_, [this](const Bad& bad) { return stamps_[bad.triangle.value()] != bad.stamp; });
     if (bad_.empty()) return true;
     if (inserted == removed) return false;
-    if (!put_in(bad_[random_.below(static_cast<std::uint32_t>(bad_.size()))])) return false;
+    if (!put_in(bad_[random_.below(static_cast<std::uint32_t>(bad_.size()))], inserted + 1 == removed)) return false;
     grow_stamps();
     for (const TriangleSlot t : patch_.fresh()) ++stamps_[t.value()];
     if (!(inserted + 1 == removed ? is_mended() : look_at_fresh())) return false;
@@ -100,11 +114,11 @@ bool Search::look_at_fresh() {
 }
 
 /// Makes a sample near the worst one a vertex, or that itself: never what was just taken out, if that can be had.
-bool Search::put_in(const Bad& bad) {
+bool Search::put_in(const Bad& bad, bool is_last) {
   const Samples& samples = patch_.samples();
   Site site = samples.site(bad.sample);
   const bool was_vertex = std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
-    return !change.inserted && change.site.sample == bad.sample;
+    return change.kind == Change::Kind::kRemoved && change.site.sample == bad.sample;
   });
   if (was_vertex || random_.below(100) < kBeside) {
     const auto offset = [this] {
@@ -116,7 +130,70 @@ bool Search::put_in(const Bad& bad) {
   const auto v = patch_.insert(site, bad.triangle);
   if (!v) return false;
   near_ = patch_.fresh().front();
-  changes_.push_back({true, *v, {}});
+  changes_.push_back({Change::Kind::kInserted, *v, {}});
+  if (step_ == 0 || !patch_.samples().may_float(site.sample)) return true;
+  const auto z = some_height(heights_of(*v));
+  if (z) patch_.set_height(*v, *z);
+  return z || !is_last;
+}
+
+/// Which heights keep all samples over the star within the tolerance, as far as it is up to them.
+Heights Search::heights_of(VertexSlot v) const {
+  Heights heights;
+  const TriangleSlot first = patch_.mesh().triangle_at(v);
+  TriangleSlot t = first;
+  do {
+    const int i = patch_.mesh().index_of(t, v);
+    if (!patch_.mesh().is_infinite(t)) {
+      const Site &b = patch_.site(patch_.mesh().vertex(t, mesh::next3(i))), &c = patch_.site(patch_.mesh().vertex(t, mesh::prev3(i)));
+      patch_.samples().narrow(patch_.site(v), b, c, tolerance_, heights);
+    }
+    t = patch_.mesh().twin(t, mesh::next3(i)).triangle();
+  } while (t != first && heights.any());
+  return heights;
+}
+
+std::optional<double> Search::some_height(const Heights& heights) {
+  const double most = patch_.samples().most();
+  const double low = std::ceil(std::max(heights.low, -most) / step_), high = std::floor(std::min(heights.high, most) / step_);
+  if (!(low <= high)) return std::nullopt;
+  return (low + std::floor(random_.fraction() * (high - low + 1))) * step_;
+}
+
+/// Whether another height of a single vertex brings all that is over the tolerance within it.
+bool Search::mend_by_height() {
+  if (step_ == 0 || bad_.empty()) return false;
+  const auto& first = patch_.mesh().triangle(bad_.front().triangle).vertices;
+  const std::uint32_t turn = random_.below(3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const VertexSlot v = first[(i + turn) % 3];
+    const bool in_all = std::all_of(bad_.begin(), bad_.end(), [&](const Bad& bad) {
+      const auto& corners = patch_.mesh().triangle(bad.triangle).vertices;
+      return std::find(corners.begin(), corners.end(), v) != corners.end();
+    });
+    if (in_all && patch_.is_removable(v) && patch_.samples().may_float(patch_.site(v).sample) && try_height(v)) return true;
+  }
+  return false;
+}
+
+bool Search::try_height(VertexSlot v) {
+  const auto z = some_height(heights_of(v));
+  if (!z) return false;
+  const double before = patch_.site(v).z;
+  patch_.set_height(v, *z);
+  grow_stamps();
+  const auto fresh = patch_.fresh();
+  const bool is_over = std::any_of(fresh.begin(), fresh.end(), [this](TriangleSlot t) {
+    return !patch_.mesh().is_infinite(t) && patch_.scan(t, tolerance_, Depth::kFirstOver).over;
+  });
+  if (is_over) {
+    patch_.set_height(v, before);
+    return false;
+  }
+  Site site = patch_.site(v);
+  site.z = before;
+  changes_.push_back({Change::Kind::kRaised, v, site});
+  for (const TriangleSlot t : fresh) ++stamps_[t.value()];
   return true;
 }
 
@@ -153,7 +230,7 @@ bool Search::look_at(TriangleSlot t, Depth depth) {
 void Search::remove_around() {
   neighbours_.clear();
   for (const Change& change : changes_) {
-    if (!change.inserted) continue;
+    if (change.kind == Change::Kind::kRemoved) continue;
     patch_.mesh().link(change.vertex, link_);
     for (const mesh::HalfEdge e : link_) neighbours_.push_back(patch_.mesh().origin(e));
   }
@@ -169,10 +246,16 @@ void Search::remove_around() {
 void Search::roll_back() {
   for (; !changes_.empty(); changes_.pop_back()) {
     const Change& change = changes_.back();
-    if (change.inserted) {
-      TIN_CHECK(patch_.remove(change.vertex));
-    } else {
-      TIN_CHECK(patch_.insert(change.site, delaunay::finite_start(patch_.mesh(), near_)).has_value());
+    switch (change.kind) {
+      case Change::Kind::kInserted:
+        TIN_CHECK(patch_.remove(change.vertex));
+        break;
+      case Change::Kind::kRemoved:
+        TIN_CHECK(patch_.insert(change.site, delaunay::finite_start(patch_.mesh(), near_)).has_value());
+        break;
+      case Change::Kind::kRaised:
+        patch_.set_height(change.vertex, change.site.z);
+        break;
     }
     near_ = patch_.fresh().front();
   }

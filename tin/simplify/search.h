@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "tin/simplify/facet.h"
 #include "tin/simplify/patch.h"
+#include "tin/simplify/simplify.h"
 #include "tin/simplify/trial.h"
 
 namespace tin::simplify {
@@ -34,7 +36,7 @@ class Random {
 class Search {
  public:
   /// Requires: every sample over the patch's own triangles is within the tolerance. Borrows `patch`.
-  Search(Patch& patch, double tolerance, std::uint64_t seed) : patch_(patch), tolerance_(tolerance), random_(seed) {}
+  Search(Patch& patch, double tolerance, Elevations elevations, std::uint64_t seed);
 
   /// Makes so many tries, or fewer when `stop` says so. Ensures: within the tolerance as before; not more vertices.
   void run(std::size_t tries, const std::function<bool()>& stop);
@@ -47,9 +49,9 @@ class Search {
     SampleIndex sample;
   };
   struct Change {
-    bool inserted;
-    mesh::VertexSlot vertex;  // if inserted
-    Site site;                // if removed
+    enum class Kind { kInserted, kRemoved, kRaised } kind;
+    mesh::VertexSlot vertex;  // unless removed
+    Site site;                // if removed; with its height before, if raised
   };
 
   void attempt();
@@ -59,7 +61,11 @@ class Search {
   bool recreate(std::size_t removed);
   bool is_mended();
   bool look_at_fresh();
-  bool put_in(const Bad& bad);
+  bool put_in(const Bad& bad, bool is_last);
+  Heights heights_of(mesh::VertexSlot v) const;
+  std::optional<double> some_height(const Heights& heights);
+  bool mend_by_height();
+  bool try_height(mesh::VertexSlot v);
   bool a_witness_is_over() const;
   void grow_stamps();
   bool look_at(mesh::TriangleSlot t, Depth depth);
@@ -68,6 +74,7 @@ class Search {
 
   Patch& patch_;
   double tolerance_;
+  double step_;  // heights that are fitted are whole multiples of it; 0: none is fitted
   Random random_;
   std::vector<std::uint32_t> stamps_;  // of each triangle: what was said of it before is void
   std::vector<Bad> bad_;

@@ -36,6 +36,10 @@ Result<void> check(const Options& options) {
   return {};
 }
 
+Demands demands_of(const Options& options) {
+  return {options.elevations == Elevations::kFit, options.keep_flat, options.against == Against::kSurface, options.threads};
+}
+
 Result<void> check_budget(const Options& options, std::size_t needed) {
   if (!options.max_vertices || *options.max_vertices >= needed) return {};
   return error(Code::kInvalidValue, "This terrain needs at least " + std::to_string(needed) + " vertices.");
@@ -56,9 +60,14 @@ std::vector<Pin> all_samples(const Samples& samples) {
 }
 
 std::optional<Worst> worst_of(const Samples& samples, const SourceSamples* source, const Certificate& certificate) {
+  if (certificate.worst_edge) {
+    const EdgeScan& edge = *certificate.worst_edge;
+    return Worst{samples.position(edge.from), edge.height, edge.error, Worst::Between{samples.position(edge.to), edge.along},
+                 std::nullopt};
+  }
   if (!certificate.worst) return std::nullopt;
   const Site site = samples.site(*certificate.worst);
-  Worst out{site.at, site.z, certificate.max_error, std::nullopt};
+  Worst out{site.at, site.z, certificate.max_error, std::nullopt, std::nullopt};
   const auto index = source == nullptr ? std::nullopt : source->find(site.at);
   if (index && source->z(*index) == site.z) out.source_index = index;
   return out;
@@ -100,8 +109,16 @@ Result<Choice> choose(const Samples& samples, const SourceSamples* source, const
   reduced->tin->collect(out.pins);
   reduced->tin.reset();
   std::sort(out.pins.begin(), out.pins.end(), [](const Pin& a, const Pin& b) { return a.sample < b.sample; });
-  out.report = {0,     out.pins.size(), certificate->samples, certificate->max_error, worst_of(samples, source, *certificate),
-                certificate->rmse, certificate->histogram, bin, certificate->within};
+  out.report.vertices_after = out.pins.size();
+  out.report.samples = certificate->samples;
+  out.report.crossings = certificate->crossings;
+  out.report.level = certificate->level;
+  out.report.max_error = certificate->max_error;
+  out.report.worst = worst_of(samples, source, *certificate);
+  out.report.rmse = certificate->rmse;
+  out.report.histogram = certificate->histogram;
+  out.report.bin = bin;
+  out.report.tolerance_met = certificate->within;
   whole.report(1);
   return out;
 }
@@ -139,7 +156,7 @@ Result<Outcome> simplify(const Terrain& terrain, const SourceSamples* source, st
                          const Options& options, base::Progress* progress) {
   if (auto fine = check(options); !fine) return fine.error();
   const Phase whole(progress, 0, 1);
-  const auto samples = make_samples(&terrain, source, own, progress);
+  const auto samples = make_samples(&terrain, source, own, demands_of(options), progress);
   if (!samples) return error(Code::kCancelled, "Cancelled.");
   auto choice = choose(*samples, source, options, whole.part(0.05, 1));
   if (!choice) return choice.error();
@@ -149,7 +166,7 @@ Result<Outcome> simplify(const Terrain& terrain, const SourceSamples* source, st
 Result<Chosen> simplify_samples(const SourceSamples& source, const Options& options, base::Progress* progress) {
   if (auto fine = check(options); !fine) return fine.error();
   const Phase whole(progress, 0, 1);
-  const auto samples = make_samples(nullptr, &source, {}, progress);
+  const auto samples = make_samples(nullptr, &source, {}, demands_of(options), progress);
   if (!samples) return error(Code::kCancelled, "Cancelled.");
   auto choice = choose(*samples, &source, options, whole.part(0.05, 1));
   if (!choice) return choice.error();

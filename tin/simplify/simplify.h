@@ -30,6 +30,18 @@ enum class Effort {
   kBest,      // until out_of_time says so; without it, fifty times
 };
 
+/// Which heights vertices have.
+enum class Elevations {
+  kSource,  // those of the samples where they stand
+  kFit,     // any within the tolerance of these: local search finds fewer vertices so. What never goes keeps its own
+};
+
+/// What stays within the tolerance of the result.
+enum class Against {
+  kSamples,
+  kSurface,  // and the surface that they make: their canonical TIN, wherever its edges cross the result's
+};
+
 /// What is asked for; a tolerance, a number of vertices, or both.
 struct Options {
   /// Largest vertical distance allowed between any sample and the result, in the terrain's vertical unit:
@@ -38,6 +50,11 @@ struct Options {
   /// How many vertices may remain: at least those at the corners of the convex hull.
   std::optional<std::size_t> max_vertices;
   Effort effort = Effort::kBalanced;
+  Elevations elevations = Elevations::kSource;
+  Against against = Against::kSamples;
+  /// Plateaus of at least so many samples must not be tilted: those lie on the result exactly that are level with all their
+  /// neighbours (the eight pixels around, or what the triangulation of all samples links them to). 0: none.
+  std::size_t keep_flat = 0;
   /// Asked now and then, by several threads at once: once it says true, the best state so far is certified and
   /// returned. (The engine knows no clock.) While the first certified state is not reached yet, work goes on.
   std::function<bool()> out_of_time;
@@ -48,11 +65,17 @@ struct Options {
   unsigned threads = 1;
 };
 
-/// The sample that is furthest from the result.
+/// The sample that is furthest from the result, or a place between two of them.
 struct Worst {
   exact::Point at;
-  double z = 0;      // the sample's own height
+  double z = 0;      // the sample's own height; the surface's, between two
   double error = 0;  // vertical unit
+  /// Between two: the other one, and what part of the way there.
+  struct Between {
+    exact::Point to;
+    double along = 0;
+  };
+  std::optional<Between> between;
   /// Its index in the source, where one was given and the sample is from there (not a person's edit).
   std::optional<std::size_t> source_index;
 };
@@ -63,7 +86,9 @@ inline constexpr std::size_t kBins = 16;
 struct Report {
   std::size_t vertices_before = 0, vertices_after = 0;
   std::size_t samples = 0;     // what was certified
-  double max_error = 0;        // vertical unit, over all samples; never above a tolerance that is met
+  std::size_t crossings = 0;   // the same, with edges of the samples' surface: Against::kSurface
+  std::size_t level = 0;       // samples of plateaus, which lie on the result exactly: keep_flat
+  double max_error = 0;        // vertical unit, over all samples and crossings; never above a tolerance that is met
   std::optional<Worst> worst;  // nothing when every sample lies on the result (max_error is 0)
   double rmse = 0;             // vertical unit, over all samples
   /// How many samples have an error in [i, i + 1) times `bin`; the last bin also holds all above. `bin` is a sixteenth of the

@@ -13,8 +13,11 @@ namespace {
 
 proto::SimplifyWorst worst_sample(const tin::simplify::Worst& worst, const tin::terrain::Terrain& terrain) {
   proto::SimplifyWorst out;
-  out.x = terrain.frame().x.world(worst.at.x);
-  out.y = terrain.frame().y.world(worst.at.y);
+  const auto& [x, y] = worst.at;
+  const auto to = worst.between ? worst.between->to : worst.at;
+  const double along = worst.between ? worst.between->along : 0;
+  out.x = terrain.frame().x.world(x + along * (static_cast<double>(to.x) - x));
+  out.y = terrain.frame().y.world(y + along * (static_cast<double>(to.y) - y));
   out.z = worst.z;
   out.error = worst.error;
   if (!worst.source_index) return out;
@@ -35,6 +38,7 @@ std::string results_json(const app::Simplified& done) {
   results.edited_meanwhile = done.edited_meanwhile;
   results.against_source = done.against_source;
   results.out_of_force = done.out_of_force;
+  results.out_of_time = done.out_of_time;
   results.seconds = done.seconds;
   results.tin = done.tin->id();
   results.revision = done.revision;
@@ -69,13 +73,22 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
   if (!inputs) return inputs.error();
   const auto tin = find_input_tin(context, inputs->tin);
   if (!tin) return tin.error();
+  const auto most_seconds = static_cast<double>(context.config.jobs.simplify_seconds);
+  if (inputs->max_seconds && *inputs->max_seconds > most_seconds)
+    return tin::base::error(tin::base::Code::kInvalidValue,
+                            "maxSeconds is at most " + std::to_string(context.config.jobs.simplify_seconds) +
+                                " on this server.",
+                            "/inputs/maxSeconds");
   if (inputs->as) {
     if (auto room = check_new_tin(context, inputs->as); !room) return room.error();
   }
   auto protect = protection_of(**tin, inputs->protect);
   if (!protect) return protect.error();
-  app::SimplifyRequest wanted{*tin, {}, inputs->max_seconds, *std::move(protect), inputs->as};
+  app::SimplifyRequest wanted{*tin, {}, inputs->max_seconds.value_or(most_seconds), *std::move(protect), inputs->as};
   wanted.options.effort = effort_of(inputs->effort);
+  wanted.options.elevations = elevations_of(inputs->elevations);
+  wanted.options.against = against_of(inputs->against);
+  wanted.options.keep_flat = static_cast<std::size_t>(inputs->keep_flat);
   wanted.options.seed = inputs->seed;
   wanted.options.threads = app::simplify_threads();
   wanted.options.tolerance = inputs->tolerance;
@@ -105,6 +118,14 @@ tin::simplify::Effort effort_of(proto::SimplifyEffort effort) {
   return tin::simplify::Effort::kBest;
 }
 
+tin::simplify::Elevations elevations_of(proto::SimplifyElevations elevations) {
+  return elevations == proto::SimplifyElevations::kFit ? tin::simplify::Elevations::kFit : tin::simplify::Elevations::kSource;
+}
+
+tin::simplify::Against against_of(proto::SimplifyAgainst against) {
+  return against == proto::SimplifyAgainst::kSurface ? tin::simplify::Against::kSurface : tin::simplify::Against::kSamples;
+}
+
 proto::SimplifyResults results_of(const tin::simplify::Report& report, const tin::terrain::Terrain& terrain) {
   proto::SimplifyResults results;
   results.vertices_before = report.vertices_before;
@@ -114,6 +135,8 @@ proto::SimplifyResults results_of(const tin::simplify::Report& report, const tin
   results.tolerance_met = report.tolerance_met;
   results.rmse = report.rmse;
   results.samples = report.samples;
+  results.level = report.level;
+  results.crossings = report.crossings;
   results.histogram_bin = report.bin;
   results.histogram.assign(report.histogram.begin(), report.histogram.end());
   return results;

@@ -76,8 +76,12 @@ Result<proto::SimplifyInputs> read_simplify(const char* body) {
 TEST(SimplifyInputsTest, ReadsEveryInput) {
   const auto inputs =
       read_simplify(
-          R"({"inputs":{"tin":"a","tolerance":0,"maxVertices":3,"as":"b","effort":"best","maxSeconds":2.5,"seed":7}})")
+          R"({"inputs":{"tin":"a","tolerance":0,"maxVertices":3,"as":"b","effort":"best","maxSeconds":2.5,"seed":7,)"
+          R"("elevations":"fit","keepFlat":12,"against":"surface"}})")
           .value();
+  EXPECT_EQ(inputs.elevations, proto::SimplifyElevations::kFit);
+  EXPECT_EQ(inputs.keep_flat, 12U);
+  EXPECT_EQ(inputs.against, proto::SimplifyAgainst::kSurface);
   EXPECT_EQ(inputs.tin, "a");
   EXPECT_EQ(inputs.tolerance, 0);
   EXPECT_EQ(inputs.max_vertices, 3U);
@@ -88,6 +92,11 @@ TEST(SimplifyInputsTest, ReadsEveryInput) {
   const auto small = read_simplify(R"({"inputs":{"tin":"a","maxVertices":1000}})").value();
   EXPECT_FALSE(small.tolerance || small.as || small.max_seconds);
   EXPECT_EQ(small.effort, proto::SimplifyEffort::kBalanced);
+  EXPECT_EQ(small.elevations, proto::SimplifyElevations::kSource);
+  EXPECT_EQ(small.keep_flat, 0U);
+  EXPECT_EQ(small.against, proto::SimplifyAgainst::kSamples);
+  EXPECT_EQ(read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":true}})")->keep_flat, 64U);
+  EXPECT_EQ(read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":false}})")->keep_flat, 0U);
 }
 
 TEST(SimplifyInputsTest, ReadsWhatStays) {
@@ -122,6 +131,11 @@ TEST(SimplifyInputsTest, ErrorsSayWhere) {
           {R"({"inputs":{"tin":"a","tolerance":1,"effort":"most"}})", Code::kInvalidValue, "/inputs/effort"},
           {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":0}})", Code::kInvalidValue, "/inputs/maxSeconds"},
           {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":86401}})", Code::kInvalidValue, "/inputs/maxSeconds"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"elevations":"any"}})", Code::kInvalidValue, "/inputs/elevations"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"elevations":1}})", Code::kMalformed, "/inputs/elevations"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"against":"points"}})", Code::kInvalidValue, "/inputs/against"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":0}})", Code::kInvalidValue, "/inputs/keepFlat"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":"yes"}})", Code::kMalformed, "/inputs/keepFlat"},
           {R"({"inputs":{"tin":"a","tolerance":1,"protect":"all"}})", Code::kInvalidValue, "/inputs/protect"},
           {R"({"inputs":{"tin":"a","tolerance":1,"protect":[1,0]}})", Code::kInvalidValue, "/inputs/protect/1"},
           {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Point","coordinates":[1,2]}}})",
@@ -160,6 +174,9 @@ TEST(SimplifyResultsTest, KeepTheContract) {
   results.against_source = true;
   results.samples = 1442401;
   results.out_of_force = 2;
+  results.level = 300;
+  results.crossings = 4000;
+  results.out_of_time = true;
   results.histogram_bin = 5;
   results.histogram = {1000000, 442401};
   results.seconds = 11.25;
@@ -168,8 +185,9 @@ TEST(SimplifyResultsTest, KeepTheContract) {
   EXPECT_EQ(proto::simplify_results_json(results),
             R"({"verticesBefore":1442401,"verticesAfter":17250,"maxError":9.99,"maxErrorAt":[-71.5,44.25],)"
             R"("maxErrorSample":{"z":1203,"column":600,"row":900},"toleranceMet":true,)"
-            R"("rmse":3.5,"certifiedAgainst":"original samples","samples":1442401,"samplesOutOfForce":2,)"
-            R"("histogram":{"bin":5,"counts":[1000000,442401]},"seconds":11.25,"editedMeanwhile":false,"tin":"hill","revision":5})");
+            R"("rmse":3.5,"certifiedAgainst":"original samples","samples":1442401,"levelSamples":300,)"
+            R"("surfaceCrossings":4000,"samplesOutOfForce":2,)"
+            R"("histogram":{"bin":5,"counts":[1000000,442401]},"outOfTime":true,"seconds":11.25,"editedMeanwhile":false,"tin":"hill","revision":5})");
   results.worst->column = results.worst->row = std::nullopt;
   results.worst->index = 17;
   const std::string of_points = proto::simplify_results_json(results);

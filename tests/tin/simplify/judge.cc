@@ -57,6 +57,63 @@ std::optional<mpq_class> height(const std::array<Corner, 3>& t, const Corner& p)
 
 }  // namespace
 
+namespace {
+
+struct Edge {
+  Point from, to;
+  double from_z, to_z;
+};
+
+/// Each once.
+std::vector<Edge> edges_of(const Terrain& terrain) {
+  const auto& mesh = terrain.mesh();
+  std::vector<Edge> out;
+  for (std::uint32_t i = 0; i < mesh.triangle_slots(); ++i) {
+    const tin::mesh::TriangleSlot t(i);
+    if (!mesh.is_alive(t) || mesh.is_infinite(t)) continue;
+    for (int side = 0; side < 3; ++side) {
+      const VertexSlot a = mesh.vertex(t, side), b = mesh.vertex(t, (side + 1) % 3);
+      const auto beyond = mesh.twin(t, (side + 2) % 3).triangle();
+      if (mesh.is_infinite(beyond) || t < beyond) out.push_back({mesh.point(a), mesh.point(b), terrain.z(a), terrain.z(b)});
+    }
+  }
+  return out;
+}
+
+/// Twice the area of the triangle; exact, since coordinates have 30 bits.
+std::int64_t turn(Point a, Point b, Point c) {
+  return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) - (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
+}
+
+bool is_between(std::int64_t from, std::int64_t to) {
+  return (from < 0 && to > 0) || (from > 0 && to < 0);
+}
+
+/// from / (from - to) of the way from one height to the other.
+mpq_class height_between(std::int64_t from, std::int64_t to, double from_z, double to_z) {
+  const mpq_class start(mpz_class(static_cast<long>(from))), length(mpz_class(static_cast<long>(from - to)));
+  return mpq_class(from_z) + start / length * (mpq_class(to_z) - mpq_class(from_z));
+}
+
+}  // namespace
+
+std::optional<std::string> judge_surface(const Terrain& source, const Terrain& result, double tolerance) {
+  const auto ours = edges_of(source), theirs = edges_of(result);
+  for (const Edge& p : ours) {
+    for (const Edge& q : theirs) {
+      const std::int64_t from = turn(q.from, q.to, p.from), to = turn(q.from, q.to, p.to);
+      if (!is_between(from, to)) continue;
+      const std::int64_t start = turn(p.from, p.to, q.from), end = turn(p.from, p.to, q.to);
+      if (!is_between(start, end)) continue;
+      const mpq_class difference =
+          height_between(from, to, p.from_z, p.to_z) - height_between(start, end, q.from_z, q.to_z);
+      if (abs(difference) > mpq_class(tolerance))
+        return "a crossing is off by " + std::to_string(mpq_class(abs(difference)).get_d());
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> judge(const Terrain& source, const Terrain& result, double tolerance) {
   const auto triangles = triangles_of(result);
   for (std::uint32_t i = 1; i < source.mesh().vertex_slots(); ++i) {

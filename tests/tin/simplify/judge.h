@@ -15,4 +15,9 @@ namespace support {
 std::optional<std::string> judge(const tin::terrain::Terrain& source, const tin::terrain::Terrain& result,
                                  double tolerance);
 
+/// The same for the surface of `source` where its edges cross those of `result`: with judge(), everywhere. Goes through all pairs
+/// of edges.
+std::optional<std::string> judge_surface(const tin::terrain::Terrain& source, const tin::terrain::Terrain& result,
+                                         double tolerance);
+
 }  // namespace support
