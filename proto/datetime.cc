@@ -1,7 +1,7 @@
 #include "proto/datetime.h"
 
-#include <chrono>
 #include <charconv>
+#include <chrono>
 
 namespace proto {
 
@@ -79,7 +79,8 @@ std::optional<Moment> moment(std::string_view text) {
   if (!reader.take("-")) return std::nullopt;
   const int day = reader.digits(2);
   if (year < 0 || month < 0 || day < 0) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
   if (!date.ok()) return std::nullopt;
   const std::int64_t midnight = std::chrono::sys_days(date).time_since_epoch().count() * kDay;
@@ -93,8 +94,8 @@ std::optional<Moment> moment(std::string_view text) {
   const bool exact = reader.rest().starts_with('.');
   const int fraction = reader.fraction_ms();
   const auto offset = offset_ms(reader);
-  if (!between(hour, 0, 23) || !between(minute, 0, 59) || !between(second, 0, 60) || fraction < 0 || !offset ||
-      !reader.rest().empty()) {
+  if (!between(hour, 0, 23) || !between(minute, 0, 59) || !between(second, 0, 60) || fraction < 0 ||
+      !offset || !reader.rest().empty()) {
     return std::nullopt;
   }
   const std::int64_t at = midnight + hour * kHour + minute * kMinute + second * kSecond + fraction - *offset;
@@ -106,7 +107,8 @@ std::optional<Moment> moment(std::string_view text) {
 
 Result<TimeSpan> parse_datetime(std::string_view text, const std::string& where) {
   const auto wrong = [&where] {
-    return error(Code::kMalformed, "A datetime is a moment or an interval of RFC 3339, like 2026-01-01T00:00:00Z/..", where);
+    return error(Code::kMalformed,
+                 "A datetime is a moment or an interval of RFC 3339, like 2026-01-01T00:00:00Z/..", where);
   };
   const auto slash = text.find('/');
   if (slash == std::string_view::npos) {

@@ -18,7 +18,8 @@ struct TimeSpan {
   }
 };
 
-/// "2026-11-27T08:15:00Z" (that second), "2026-11-27T08:15Z" (that minute), "2026-11-27" (that day), "a/b", "../b", "a/..". Errors: kMalformed.
+/// "2026-11-27T08:15:00Z" (that second), "2026-11-27T08:15Z" (that minute), "2026-11-27" (that day), "a/b",
+/// "../b", "a/..". Errors: kMalformed.
 tin::base::Result<TimeSpan> parse_datetime(std::string_view text, const std::string& where);
 
 }  // namespace proto

@@ -188,7 +188,8 @@ Result<Levels> Levels::parse(std::string_view text, const std::string& where) {
   } else {
     for (const auto part : split(text, ',')) {
       if (levels.values_.size() == kMostLevels) {
-        return error(Code::kTooLarge, "There may be " + std::to_string(kMostLevels) + " levels at most.", where);
+        return error(Code::kTooLarge, "There may be " + std::to_string(kMostLevels) + " levels at most.",
+                     where);
       }
       const auto value = parse_number(part, where);
       if (!value) return value.error();
@@ -221,8 +222,9 @@ Result<SurfaceParameters> parse_parameter_names(const std::optional<std::string>
     } else if (name == "distance" && has_distance) {
       wanted.distance = true;
     } else {
-      return error(Code::kMalformed, has_distance ? "There are the parameters elevation and distance."
-                                                  : "There is one parameter here, elevation.",
+      return error(Code::kMalformed,
+                   has_distance ? "There are the parameters elevation and distance."
+                                : "There is one parameter here, elevation.",
                    where);
     }
   }

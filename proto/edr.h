@@ -29,7 +29,7 @@ class Levels {
   bool contains(double level) const;
 
  private:
-  double low_ = 0, high_ = 0;    // when there are no values
+  double low_ = 0, high_ = 0;   // when there are no values
   std::vector<double> values_;  // ascending
 };
 
@@ -39,14 +39,15 @@ struct SurfaceParameters {
   bool distance = false;  // along a trajectory
 };
 
-/// "elevation", "distance" or both, with a comma. Errors: kMalformed for other names, and for "distance" where
-/// nothing has one.
+/// "elevation", "distance" or both, with a comma. Errors: kMalformed for other names, and for "distance"
+/// where nothing has one.
 tin::base::Result<SurfaceParameters> parse_parameter_names(const std::optional<std::string>& text,
                                                            bool has_distance, const std::string& where);
 
 // Answers --------------------------------------------------------------------------
 
-/// Elevations at places: at the nodes of a grid, row by row from the south and from the west, or at each place.
+/// Elevations at places: at the nodes of a grid, row by row from the south and from the west, or at each
+/// place.
 struct SurfaceCoverage {
   struct Axis {
     double start = 0, stop = 0;

@@ -118,7 +118,11 @@ void write_collection(JsonWriter& json, const CollectionDocument& collection) {
     json.key("crs").string("http://www.opengis.net/def/crs/OGC/1.3/CRS84");
     json.end_object().end_object();
   }
-  if (collection.features) json.key("itemType").string("feature");
+  if (collection.features) {
+    json.key("itemType").string("feature");
+  } else {
+    json.key("layerDataType").string("Coverage");  // GDAL's OAPIF driver takes all others for features
+  }
   json.key("crs");
   write_strings(json, collection.crs);
   write_if_any(json, "storageCrs", collection.storage_crs);
@@ -272,8 +276,8 @@ std::string_view job_state_name(JobState state) {
 }
 
 std::optional<JobState> job_state(std::string_view name) {
-  for (const JobState state : {JobState::kAccepted, JobState::kRunning, JobState::kSuccessful, JobState::kFailed,
-                               JobState::kDismissed}) {
+  for (const JobState state : {JobState::kAccepted, JobState::kRunning, JobState::kSuccessful,
+                               JobState::kFailed, JobState::kDismissed}) {
     if (job_state_name(state) == name) return state;
   }
   return std::nullopt;

@@ -77,7 +77,9 @@ class Reader {
     for (const auto& [name, kind] : kKinds) {
       if (word == name && (text_.empty() || text_.front() == '(')) return kind;
     }
-    fail("A geometry is written like POINT(7 46), LINESTRING(7 46,7.1 46.2) or POLYGON((...)), in two dimensions.");
+    fail(
+        "A geometry is written like POINT(7 46), LINESTRING(7 46,7.1 46.2) or POLYGON((...)), in two "
+        "dimensions.");
     return Kind::kPoint;
   }
 
@@ -88,7 +90,8 @@ class Reader {
     do {
       item();
     } while (!error_ && take(','));
-    if (!error_ && !take(')')) fail("Positions are two numbers with a space between them, and commas between positions.");
+    if (!error_ && !take(')'))
+      fail("Positions are two numbers with a space between them, and commas between positions.");
   }
 
   Sequence points(std::size_t most) {
@@ -126,7 +129,8 @@ class Reader {
     Position2 at;
     at.x = number();
     at.y = number();
-    if (room_ == 0 && !error_) error_ = error(Code::kTooLarge, "The geometry has too many positions.", where_);
+    if (room_ == 0 && !error_)
+      error_ = error(Code::kTooLarge, "The geometry has too many positions.", where_);
     if (room_ > 0) --room_;
     return at;
   }

@@ -1,5 +1,5 @@
-// /tins/{tin}/collections/surface/{position|trajectory|area|cube}: the surface by OGC API EDR, as CoverageJSON,
-// GeoJSON, or a page.
+// /tins/{tin}/collections/surface/{position|trajectory|area|cube}: the surface by OGC API EDR, as
+// CoverageJSON, GeoJSON, or a page.
 #include "server/api/edr.h"
 
 #include <algorithm>
@@ -82,8 +82,8 @@ Result<Asked> read_asked(const app::Tin& tin, const Request& request, bool has_d
     if (!levels) return as_bad_parameter(levels.error());
     asked.levels = std::move(*levels);
   }
-  const auto parameters =
-      proto::parse_parameter_names(request.query_value("parameter-name"), has_distance, "query:parameter-name");
+  const auto parameters = proto::parse_parameter_names(request.query_value("parameter-name"), has_distance,
+                                                       "query:parameter-name");
   if (!parameters) return parameters.error();
   asked.parameters = *parameters;
   return asked;
@@ -93,9 +93,10 @@ Position2 swapped_if(bool swap, Position2 at) {
   return swap ? Position2{at.y, at.x} : at;
 }
 
-/// The geometry of "coords", easting or longitude first. Errors: kMalformed also for kinds other than `one` and `many`.
-Result<WktGeometry> read_coords(const Request& request, const Asked& asked, std::int64_t most, Kind one, Kind many,
-                                const std::string& wanted) {
+/// The geometry of "coords", easting or longitude first. Errors: kMalformed also for kinds other than `one`
+/// and `many`.
+Result<WktGeometry> read_coords(const Request& request, const Asked& asked, std::int64_t most, Kind one,
+                                Kind many, const std::string& wanted) {
   const auto text = request.query_value("coords");
   if (!text) return error(Code::kMalformed, "The parameter coords is missing.", "query:coords");
   auto geometry = proto::parse_wkt(*text, static_cast<std::size_t>(most), "query:coords");
@@ -118,7 +119,8 @@ void keep_levels(const Asked& asked, std::vector<std::optional<double>>& elevati
   }
 }
 
-Result<std::vector<std::optional<double>>> sample(const Asked& asked, std::vector<double> x, std::vector<double> y) {
+Result<std::vector<std::optional<double>>> sample(const Asked& asked, std::vector<double> x,
+                                                  std::vector<double> y) {
   auto z = elevations_at(*asked.version.terrain, asked.crs.name, "query:crs", {}, std::move(x), std::move(y));
   if (z) keep_levels(asked, *z);
   return z;
@@ -173,11 +175,12 @@ Result<Coverages> trajectory(const Context& context, const Request& request, con
   return coverages;
 }
 
-// Grids ---------------------------------------------------------------------------------------------------------------
+// Grids -----------------------------------------------------------------------------------------------
 
 using tin::frame::Extent;
 
-/// How many nodes a parameter asks for; 0: as close as the vertices lie; nothing: as close as that, within limits.
+/// How many nodes a parameter asks for; 0: as close as the vertices lie; nothing: as close as that, within
+/// limits.
 Result<std::optional<std::int64_t>> read_resolution(const Request& request, const std::string& name) {
   const auto text = request.query_value(name);
   if (!text) return std::optional<std::int64_t>();
@@ -223,9 +226,10 @@ Result<SurfaceCoverage> lay_grid(const Context& context, const Request& request,
   grid.x = axis(box.min_x, box.max_x, choose(*x, box.max_x - box.min_x));
   grid.y = axis(box.min_y, box.max_y, choose(*y, box.max_y - box.min_y));
   if (grid.x.count > kMostNodes || grid.y.count > kMostNodes || grid.x.count * grid.y.count > most) {
-    return error(Code::kTooLarge, "The answer would have more than " + std::to_string(most) + " positions, or more than " +
-                                      std::to_string(kMostNodes) +
-                                      " along a side, the limits here: ask for a smaller resolution-x and -y.");
+    return error(Code::kTooLarge,
+                 "The answer would have more than " + std::to_string(most) + " positions, or more than " +
+                     std::to_string(kMostNodes) +
+                     " along a side, the limits here: ask for a smaller resolution-x and -y.");
   }
   return grid;
 }
@@ -271,7 +275,8 @@ std::optional<Extent> common(const Extent& a, const Extent& b) {
   return both;
 }
 
-/// Elevations on a grid over a box, within polygons if any are given. None: the box does not meet the surface.
+/// Elevations on a grid over a box, within polygons if any are given. None: the box does not meet the
+/// surface.
 Result<Coverages> sample_grid(Context& context, const Request& request, const Asked& asked, const Extent& box,
                               const std::vector<std::vector<WktGeometry::Sequence>>& polygons) {
   const Slot slot(context.exports);
@@ -313,23 +318,26 @@ Result<Coverages> area(Context& context, const Request& request, const Asked& as
   Extent box{INFINITY, INFINITY, -INFINITY, -INFINITY};
   for (const auto& polygon : geometry->parts) {
     for (const Position2& at : polygon[0]) {
-      box = {std::min(box.min_x, at.x), std::min(box.min_y, at.y), std::max(box.max_x, at.x), std::max(box.max_y, at.y)};
+      box = {std::min(box.min_x, at.x), std::min(box.min_y, at.y), std::max(box.max_x, at.x),
+             std::max(box.max_y, at.y)};
     }
   }
   return sample_grid(context, request, asked, box, geometry->parts);
 }
 
 Result<Coverages> cube(Context& context, const Request& request, Asked& asked) {
-  if (!request.query_value("bbox")) return error(Code::kMalformed, "The parameter bbox is missing.", "query:bbox");
+  if (!request.query_value("bbox"))
+    return error(Code::kMalformed, "The parameter bbox is missing.", "query:bbox");
   const auto boxes = read_boxes(request, asked.crs);
   if (!boxes) return boxes.error();
-  if (boxes->size() != 1) return error(Code::kMalformed, "A cube cannot go over the antimeridian.", "query:bbox");
+  if (boxes->size() != 1)
+    return error(Code::kMalformed, "A cube cannot go over the antimeridian.", "query:bbox");
   const proto::Bbox& box = boxes->front();
   if (box.min_z && !asked.levels) asked.levels = Levels::between(*box.min_z, *box.max_z);
   return sample_grid(context, request, asked, {box.min_x, box.min_y, box.max_x, box.max_y}, {});
 }
 
-// Answers -------------------------------------------------------------------------------------------------------------
+// Answers ---------------------------------------------------------------------------------------------
 
 /// Calls `f` with each place of a coverage and its elevation.
 template <class F>
@@ -347,7 +355,8 @@ void for_each_place(const SurfaceCoverage& coverage, const F& f) {
 }
 
 /// The stretches of surface along a line, one after another.
-void write_stretches(proto::formats::GeoJsonWriter& writer, const SurfaceCoverage& coverage, const Asked& asked) {
+void write_stretches(proto::formats::GeoJsonWriter& writer, const SurfaceCoverage& coverage,
+                     const Asked& asked) {
   std::vector<Position2> at;
   std::vector<double> z, distance;
   const auto flush = [&] {
@@ -372,7 +381,8 @@ void write_stretches(proto::formats::GeoJsonWriter& writer, const SurfaceCoverag
   flush();
 }
 
-/// Places that were asked for by name appear without an elevation, too, unless "z" is why they have none; those of grids do not.
+/// Places that were asked for by name appear without an elevation, too, unless "z" is why they have none;
+/// those of grids do not.
 std::string geojson(const Coverages& coverages, const Asked& asked, std::vector<proto::Link> links) {
   std::string body;
   proto::formats::GeoJsonWriter writer(body, asked.crs.geographic ? proto::formats::Coordinates::kDegrees
@@ -455,7 +465,8 @@ Response answer(const Context& context, const app::Tin& tin, const Request& requ
       break;
     }
     case Format::kGeoJson:
-      response.headers = {{"Content-Type", std::string(proto::formats::kGeoJsonMediaType)}, {"Vary", "Accept"}};
+      response.headers = {{"Content-Type", std::string(proto::formats::kGeoJsonMediaType)},
+                          {"Vary", "Accept"}};
       response.body = geojson(coverages, asked, links_of(context, request, asked.format));
       tag.insert(tag.size() - 1, "-geojson");
       break;
@@ -503,8 +514,10 @@ void add_queries(proto::CollectionDocument& document, const std::string& self) {
 void add_edr(http::Router& router, Context& context) {
   using http::Method;
   const std::string base = "/tins/{tin}/collections/surface/";
-  const auto add = [&](std::string_view name, std::vector<std::string> parameters, bool has_distance, auto find) {
-    for (const char* common : {"z", "datetime", "parameter-name", "crs", "f"}) parameters.emplace_back(common);
+  const auto add = [&](std::string_view name, std::vector<std::string> parameters, bool has_distance,
+                       auto find) {
+    for (const char* common : {"z", "datetime", "parameter-name", "crs", "f"})
+      parameters.emplace_back(common);
     router.add({.method = Method::kGet,
                 .pattern = base + std::string(name),
                 .query = {parameters.begin(), parameters.end()},

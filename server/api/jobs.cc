@@ -1,11 +1,10 @@
 // /jobs: list, status, results, dismissal (OGC API Processes).
-#include "server/api/job_answer.h"
-
 #include <algorithm>
 #include <chrono>
 
 #include "proto/bbox.h"
 #include "proto/datetime.h"
+#include "server/api/job_answer.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
 
@@ -42,12 +41,13 @@ constexpr std::uint64_t kPageOfJobs = 100, kMostJobs = 10'000;
 
 /// What a list of jobs is to hold (OGC API Processes, job list).
 struct Selection {
-  std::vector<std::string> processes;      // none: all
-  std::vector<proto::JobState> states;     // none: all
+  std::vector<std::string> processes;   // none: all
+  std::vector<proto::JobState> states;  // none: all
   std::optional<proto::TimeSpan> created;
   std::optional<std::uint64_t> min_seconds, max_seconds;
   std::uint64_t limit = kPageOfJobs;
-  std::optional<std::int64_t> before_ms;  // a page's place: jobs of that moment, from that id on, and earlier ones
+  std::optional<std::int64_t>
+      before_ms;  // a page's place: jobs of that moment, from that id on, and earlier ones
   std::string from_id;
 
   bool has(const JobStatus& job, std::int64_t now_ms) const;
@@ -76,8 +76,8 @@ std::vector<std::string> words(std::string_view text) {
   return out;
 }
 
-Result<std::optional<std::uint64_t>> count_of(const Request& request, const std::string& name, std::uint64_t least,
-                                              std::uint64_t most) {
+Result<std::optional<std::uint64_t>> count_of(const Request& request, const std::string& name,
+                                              std::uint64_t least, std::uint64_t most) {
   const auto text = request.query_value(name);
   if (!text) return std::optional<std::uint64_t>();
   const auto count = proto::parse_count(*text, least, most, "query:" + name);
@@ -101,7 +101,8 @@ Result<std::vector<proto::JobState>> states_of(std::string_view text) {
   for (const std::string& word : words(text)) {
     const auto state = proto::job_state(word);
     if (!state) {
-      return error(Code::kMalformed, "A status is accepted, running, successful, failed or dismissed.", "query:status");
+      return error(Code::kMalformed, "A status is accepted, running, successful, failed or dismissed.",
+                   "query:status");
     }
     states.push_back(*state);
   }
@@ -123,7 +124,8 @@ Result<Selection> read_selection(const Request& request) {
     if (!span) return span.error();
     wanted.created = *span;
   }
-  const auto least = count_of(request, "minDuration", 0, UINT32_MAX), most = count_of(request, "maxDuration", 0, UINT32_MAX),
+  const auto least = count_of(request, "minDuration", 0, UINT32_MAX),
+             most = count_of(request, "maxDuration", 0, UINT32_MAX),
              limit = count_of(request, "limit", 1, kMostJobs);
   if (!least) return least.error();
   if (!most) return most.error();
@@ -150,7 +152,12 @@ std::string list_href(const Request& request, const JobStatus* next) {
 }
 
 HtmlPage page_of(const std::vector<JobStatus>& shown, const std::vector<proto::Link>& links) {
-  HtmlPage page{"Jobs", "Work that takes its time", links, {}, {"id", "process", "status", "progress", "created", "what"}, {}};
+  HtmlPage page{"Jobs",
+                "Work that takes its time",
+                links,
+                {},
+                {"id", "process", "status", "progress", "created", "what"},
+                {}};
   for (const JobStatus& job : shown) {
     page.rows.push_back({job.id, job.kind, std::string(proto::job_state_name(state_of(job.state))),
                          std::to_string(job.progress) + " %", rfc3339(job.created_ms), job.description});
@@ -255,10 +262,11 @@ Result<Response> job_result_answer(const jobs::JobStatus& job) {
 
 void add_jobs(http::Router& router, Context& context) {
   using http::Method;
-  router.add({.method = Method::kGet,
-              .pattern = "/jobs",
-              .query = {"type", "processID", "status", "datetime", "minDuration", "maxDuration", "limit", "next"},
-              .handler = guarded([&context](Request& r) { return list(context, r); })});
+  router.add(
+      {.method = Method::kGet,
+       .pattern = "/jobs",
+       .query = {"type", "processID", "status", "datetime", "minDuration", "maxDuration", "limit", "next"},
+       .handler = guarded([&context](Request& r) { return list(context, r); })});
   router.add({.method = Method::kGet, .pattern = "/jobs/{job}", .handler = guarded([&context](Request& r) {
                                                                   return show(context, r);
                                                                 })});

@@ -33,7 +33,8 @@ Result<Response> landing(const Request& request) {
 }
 
 Result<Response> conformance(const Request& request) {
-  return negotiated(request, proto::conformance_json(server_conformance()), kJson, conformance_page(server_conformance()));
+  return negotiated(request, proto::conformance_json(server_conformance()), kJson,
+                    conformance_page(server_conformance()));
 }
 
 }  // namespace

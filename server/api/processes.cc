@@ -47,7 +47,8 @@ Result<Response> show(Context&, const Request& request) {
   const auto id = request.path_parameter("process");
   const Process* process = processes::find_process(id);
   if (process == nullptr) return no_such_process(id);
-  return negotiated(request, proto::process_json(*process->description), kJson, page_of(*process->description));
+  return negotiated(request, proto::process_json(*process->description), kJson,
+                    page_of(*process->description));
 }
 
 /// The work of an execution whose result stands in a document.

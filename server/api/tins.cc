@@ -107,7 +107,8 @@ Result<Response> list(Context& context, const Request& request) {
   for (std::size_t i = 0; i < tins.size() && i < limit; ++i) answer.tins.push_back(tin_document(*tins[i]));
   answer.links = {{"/tins", "self", std::string(kJson), ""}};
   HtmlPage page{"Terrains", std::to_string(tins.size()) + " in all", {}, {}, {}, {}};
-  for (const auto& tin : answer.tins) page.links.push_back({"/tins/" + tin.id, "item", "", tin.title.empty() ? tin.id : tin.title});
+  for (const auto& tin : answer.tins)
+    page.links.push_back({"/tins/" + tin.id, "item", "", tin.title.empty() ? tin.id : tin.title});
   return negotiated(request, proto::tin_list_json(answer), kJson, page);
 }
 

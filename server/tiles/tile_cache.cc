@@ -88,7 +88,8 @@ void write_available(proto::JsonWriter& json, const Tileset& tiles, const TileId
   for (int z = id.z + 1; z <= id.z + proto::kMetadataLevels && z < tiles.levels; ++z) {
     const int down = z - id.z;
     const auto [x0, y0, x1, y1] = tiles.available(z);
-    const std::uint32_t first_x = id.x << down, first_y = id.y << down, width = (std::uint32_t{1} << down) - 1;
+    const std::uint32_t first_x = id.x << down, first_y = id.y << down,
+                        width = (std::uint32_t{1} << down) - 1;
     const std::uint32_t west = std::max(x0, first_x), east = std::min(x1, first_x + width);
     const std::uint32_t south = std::max(y0, first_y), north = std::min(y1, first_y + width);
     json.begin_array();
@@ -240,7 +241,8 @@ Result<std::shared_ptr<const CachedTile>> TileCache::get(const app::Tin& tin, Ti
   if (!bytes) return bytes.error();
   auto tile = std::make_shared<CachedTile>(CachedTile{std::move(*bytes), ""});
   tile->etag = tag_of(tile->bytes);
-  Entry entry{key, tile, version.revision, lattice_area(*version.terrain, is_terrain(kind), id), {}, 0, false, {}};
+  Entry entry{key,   tile, version.revision, lattice_area(*version.terrain, is_terrain(kind), id), {}, 0,
+              false, {}};
   if (tiles) {
     entry.heights = tiles->heights;
     entry.levels = tiles->levels;

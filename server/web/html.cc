@@ -17,7 +17,8 @@ void write_steps(std::string& out, std::string_view path) {
   out += "<nav><a href=\"/\">Tinsmith</a>";
   for (std::size_t at = 1; at < path.size();) {
     const std::size_t end = std::min(path.find('/', at), path.size());
-    out += " / <a href=\"" + escaped_markup(path.substr(0, end)) + "\">" + escaped_markup(path.substr(at, end - at)) + "</a>";
+    out += " / <a href=\"" + escaped_markup(path.substr(0, end)) + "\">" +
+           escaped_markup(path.substr(at, end - at)) + "</a>";
     at = end + 1;
   }
   out += "</nav>\n";
@@ -35,7 +36,8 @@ void write_row(std::string& out, const std::vector<std::string>& cells, std::str
 
 std::string render(const Page& page) {
   std::string out = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
-  out += "<meta name=\"viewport\" content=\"width=device-width\"><title>" + escaped_markup(page.title) + "</title><style>";
+  out += "<meta name=\"viewport\" content=\"width=device-width\"><title>" + escaped_markup(page.title) +
+         "</title><style>";
   out.append(kStyle).append("</style></head><body>\n");
   write_steps(out, page.path);
   out += "<h1>" + escaped_markup(page.title) + "</h1>\n";
@@ -55,8 +57,8 @@ std::string render(const Page& page) {
   }
   out += "<h2>Links</h2>\n<ul>\n";
   for (const PageLink& link : page.links) {
-    out += "<li><a href=\"" + escaped_markup(link.href) + "\">" + escaped_markup(link.title) + "</a> <small>" + escaped_markup(link.type) +
-           "</small></li>\n";
+    out += "<li><a href=\"" + escaped_markup(link.href) + "\">" + escaped_markup(link.title) +
+           "</a> <small>" + escaped_markup(link.type) + "</small></li>\n";
   }
   out += "</ul>\n</body></html>\n";
   return out;

@@ -138,7 +138,8 @@ std::vector<std::string> breaches(const Ask& ask, const RawAnswer& answer) {
   const Json& responses = operation_node(operation)->at("responses");
   const auto listed = responses.find(std::to_string(answer.status));
   if (listed != responses.end() && answer.status < 400)
-    check_documented_fields(resolved(*listed), answer, ask.fields.find("respond-async") != std::string::npos, wrong);
+    check_documented_fields(resolved(*listed), answer, ask.fields.find("respond-async") != std::string::npos,
+                            wrong);
   const std::string type = answer.header("content-type");
   const std::string plain = type.starts_with("text/html") ? "text/html" : type;
   if (plain.find("json") == std::string::npos && !(plain.empty() && answer.body.empty())) {

@@ -1,4 +1,5 @@
-// OGC API EDR on a TIN's surface: what its queries answer, in which formats, and what the requirements say of bad ones.
+// OGC API EDR on a TIN's surface: what its queries answer, in which formats, and what the requirements say of
+// bad ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,13 +79,15 @@ TEST_F(EdrTest, WithoutACrsCoordinatesAreLongitudeAndLatitude) {
   EXPECT_EQ(swapped.at("domain").at("axes"), coverage.at("domain").at("axes"));
   const Json features = geojson("/position?coords=POINT(40.6505%20-80.9995)&crs=EPSG:4326");
   EXPECT_EQ(features.at("features").at(0).at("geometry").at("coordinates").at(0), 40.6505);
-  EXPECT_EQ(server_.get(kSurface + "/position?coords=POINT(40.6505%20-80.9995)&crs=EPSG:4326").header("content-crs"),
+  EXPECT_EQ(server_.get(kSurface + "/position?coords=POINT(40.6505%20-80.9995)&crs=EPSG:4326")
+                .header("content-crs"),
             "<http://www.opengis.net/def/crs/EPSG/0/4326>");
 }
 
 TEST_F(EdrTest, ManyPositionsAreOneCoverage) {
   const std::string query =
-      std::string("/position?coords=MULTIPOINT((500000%204500000),(500100%204500100),(499000%204500000))") + kUtm;
+      std::string("/position?coords=MULTIPOINT((500000%204500000),(500100%204500100),(499000%204500000))") +
+      kUtm;
   const Json coverage = covjson(query);
   EXPECT_EQ(coverage.at("domain").at("domainType"), "MultiPoint");
   EXPECT_EQ(coverage.at("domain").at("axes").at("composite").at("values").at(1), Json({500100, 4500100}));
@@ -111,7 +114,8 @@ TEST_F(EdrTest, ATrajectoryIsTheProfile) {
   const Json far = covjson("/trajectory?coords=LINESTRING(" + line + ")&parameter-name=distance" + kUtm);
   EXPECT_FALSE(far.at("parameters").contains("elevation"));
 
-  const Json several = covjson("/trajectory?coords=MULTILINESTRING((" + line + "),(500010%204500020,500010%204500080))" + kUtm);
+  const Json several = covjson("/trajectory?coords=MULTILINESTRING((" + line +
+                               "),(500010%204500020,500010%204500080))" + kUtm);
   EXPECT_EQ(several.at("type"), "CoverageCollection");
   ASSERT_EQ(several.at("coverages").size(), 2u);
   EXPECT_EQ(values(several.at("coverages").at(0)), values(coverage));
@@ -119,7 +123,8 @@ TEST_F(EdrTest, ATrajectoryIsTheProfile) {
 }
 
 TEST_F(EdrTest, ATrajectoryOverTheEdgeHasTheStretchOfSurface) {
-  const std::string query = std::string("/trajectory?coords=LINESTRING(499990%204500050,500110%204500050)") + kUtm;
+  const std::string query =
+      std::string("/trajectory?coords=LINESTRING(499990%204500050,500110%204500050)") + kUtm;
   const Json z = values(covjson(query));
   EXPECT_TRUE(z.front().is_null());
   EXPECT_TRUE(z.back().is_null());
@@ -130,23 +135,29 @@ TEST_F(EdrTest, ATrajectoryOverTheEdgeHasTheStretchOfSurface) {
   EXPECT_EQ(feature.at("geometry").at("coordinates").front(), Json({500000, 4500050, 10}));
   EXPECT_EQ(feature.at("geometry").at("coordinates").back(), Json({500100, 4500050, 20}));
   EXPECT_EQ(feature.at("properties").at("elevation").size(), feature.at("geometry").at("coordinates").size());
-  EXPECT_NEAR(feature.at("properties").at("distance").front().get<double>(), 10, 0.01) << "from the line's beginning";
+  EXPECT_NEAR(feature.at("properties").at("distance").front().get<double>(), 10, 0.01)
+      << "from the line's beginning";
 }
 
 TEST_F(EdrTest, ACubeIsAGridFromEndToEnd) {
-  const Json coverage = covjson(std::string("/cube?bbox=500000,4500000,500100,4500100&resolution-x=3&resolution-y=2") + kUtm);
+  const Json coverage =
+      covjson(std::string("/cube?bbox=500000,4500000,500100,4500100&resolution-x=3&resolution-y=2") + kUtm);
   EXPECT_EQ(coverage.at("domain").at("domainType"), "Grid");
-  EXPECT_EQ(coverage.at("domain").at("axes").at("x"), Json({{"start", 500000}, {"stop", 500100}, {"num", 3}}));
+  EXPECT_EQ(coverage.at("domain").at("axes").at("x"),
+            Json({{"start", 500000}, {"stop", 500100}, {"num", 3}}));
   EXPECT_EQ(coverage.at("ranges").at("elevation").at("axisNames"), Json({"y", "x"}));
   EXPECT_EQ(values(coverage), Json({10, 15, 20, 10, 15, 20}));
   // Beyond the surface the box is cut.
-  const Json wide = covjson(std::string("/cube?bbox=0,4500050,900000,9000000&resolution-x=2&resolution-y=1") + kUtm);
+  const Json wide =
+      covjson(std::string("/cube?bbox=0,4500050,900000,9000000&resolution-x=2&resolution-y=1") + kUtm);
   EXPECT_EQ(wide.at("domain").at("axes").at("x").at("stop"), 500100);
-  EXPECT_EQ(wide.at("domain").at("axes").at("y").at("values"), Json({4500075})) << "one row lies in the middle";
+  EXPECT_EQ(wide.at("domain").at("axes").at("y").at("values"), Json({4500075}))
+      << "one row lies in the middle";
   EXPECT_EQ(values(wide), Json({10, 20}));
   const Json otherwise = covjson(std::string("/cube?bbox=500000,4500000,500100,4500100") + kUtm);
   EXPECT_EQ(otherwise.at("ranges").at("elevation").at("shape"), Json({17, 17}));
-  const Json stored = covjson(std::string("/cube?bbox=500000,4500000,500100,4500100&resolution-x=0&resolution-y=0") + kUtm);
+  const Json stored =
+      covjson(std::string("/cube?bbox=500000,4500000,500100,4500100&resolution-x=0&resolution-y=0") + kUtm);
   EXPECT_EQ(stored.at("ranges").at("elevation").at("shape"), Json({3, 3})) << "as close as vertices lie";
   const Json lon_lat = covjson("/cube?bbox=-80.9999,40.6503,-80.9990,40.6508");
   EXPECT_EQ(lon_lat.at("domain").at("referencing").at(0).at("system").at("type"), "GeographicCRS");
@@ -156,7 +167,8 @@ TEST_F(EdrTest, ACubeIsAGridFromEndToEnd) {
 TEST_F(EdrTest, AnAreaIsTheGridWithinThePolygon) {
   // The half below the diagonal, with a hole in it, on a grid of 11 x 11.
   const std::string half = "(500000%204500000,500100%204500000,500100%204500100,500000%204500000)";
-  const std::string hole = "(500055%204500015,500065%204500015,500065%204500025,500055%204500025,500055%204500015)";
+  const std::string hole =
+      "(500055%204500015,500065%204500015,500065%204500025,500055%204500025,500055%204500015)";
   const std::string size = std::string("&resolution-x=11&resolution-y=11") + kUtm;
   const Json coverage = covjson("/area?coords=POLYGON(" + half + "," + hole + ")" + size);
   const Json z = values(coverage);
@@ -171,7 +183,9 @@ TEST_F(EdrTest, AnAreaIsTheGridWithinThePolygon) {
       }
     }
   }
-  const Json two = covjson("/area?coords=MULTIPOLYGON((" + half + "),((500000%204500050,500050%204500050,500000%204500100,500000%204500050)))" + size);
+  const Json two =
+      covjson("/area?coords=MULTIPOLYGON((" + half +
+              "),((500000%204500050,500050%204500050,500000%204500100,500000%204500050)))" + size);
   EXPECT_EQ(values(two).at(6 * 11 + 1), 11) << "in the second polygon";
   EXPECT_EQ(values(two).at(2 * 11 + 6), 16) << "no hole now";
   std::size_t inside = 0;
@@ -180,7 +194,8 @@ TEST_F(EdrTest, AnAreaIsTheGridWithinThePolygon) {
 }
 
 TEST_F(EdrTest, WhereThereIsNothingTheAnswerIsEmpty) {
-  for (const std::string target : {"/cube?bbox=10,10,11,11", "/area?coords=POLYGON((1%201,2%201,2%202,1%201))"}) {
+  for (const std::string target :
+       {"/cube?bbox=10,10,11,11", "/area?coords=POLYGON((1%201,2%201,2%202,1%201))"}) {
     const RawAnswer answer = server_.get(kSurface + target);
     EXPECT_EQ(answer.status, 204) << target;
     EXPECT_TRUE(answer.body.empty());
@@ -199,15 +214,19 @@ TEST_F(EdrTest, LevelsSelect) {
   const std::string box = std::string("/cube?bbox=500000,4500000,14,500100,4500000,18&resolution-x=5") + kUtm;
   EXPECT_EQ(values(covjson(box)), Json({nullptr, nullptr, 15, 17.5, nullptr}));
   EXPECT_EQ(values(covjson(box + "&z=10")), Json({10, nullptr, nullptr, nullptr, nullptr})) << "z wins";
-  EXPECT_EQ(geojson(std::string("/position?coords=POINT(500025%204500050)&z=13/14") + kUtm).at("features").size(), 0u);
+  EXPECT_EQ(
+      geojson(std::string("/position?coords=POINT(500025%204500050)&z=13/14") + kUtm).at("features").size(),
+      0u);
 }
 
 TEST_F(EdrTest, BadQuestionsAre400) {
   for (const std::string target : {"/position", "/trajectory", "/area"}) {
     expect_bad(target, "query:coords");
-    for (const char* coords : {"", "POINT", "POINT(1)", "POINT(1%202%203)", "POINT%20Z(1%202%203)", "POINT(1%20nan)", "POINT(1%202",
-                               "POINT(1%202))", "POINT%20EMPTY", "CIRCLE(1%202)", "LINESTRING(1%202)", "POINT(1%202,3%204)",
-                               "POLYGON((0%200,1%200,0%201))", "POLYGON((0%200,1%200,0%201,1%201))", "GEOMETRYCOLLECTION(POINT(1%202))"}) {
+    for (const char* coords :
+         {"", "POINT", "POINT(1)", "POINT(1%202%203)", "POINT%20Z(1%202%203)", "POINT(1%20nan)",
+          "POINT(1%202", "POINT(1%202))", "POINT%20EMPTY", "CIRCLE(1%202)", "LINESTRING(1%202)",
+          "POINT(1%202,3%204)", "POLYGON((0%200,1%200,0%201))", "POLYGON((0%200,1%200,0%201,1%201))",
+          "GEOMETRYCOLLECTION(POINT(1%202))"}) {
       expect_bad(target + "?coords=" + coords, "query:coords");
     }
   }
@@ -252,7 +271,8 @@ TEST_F(EdrTest, FormatsByNameAndByAccept) {
   EXPECT_NE(page.body.find("14.2"), std::string::npos);
   const RawAnswer plain = server_.get(target, "Accept: */*\r\n");
   EXPECT_EQ(plain.header("content-type"), "application/vnd.cov+json");
-  EXPECT_EQ(server_.get(target + "&f=geojson", "Accept: text/html\r\n").header("content-type"), "application/geo+json");
+  EXPECT_EQ(server_.get(target + "&f=geojson", "Accept: text/html\r\n").header("content-type"),
+            "application/geo+json");
   EXPECT_NE(plain.header("etag"), geojson.header("etag"));
   EXPECT_NE(plain.header("etag"), page.header("etag"));
   EXPECT_EQ(plain.body, server_.get(target).body) << "byte-stable";
@@ -279,7 +299,8 @@ TEST_F(EdrTest, EveryCollectionSaysHowItIsQueried) {
     }
   }
   const Json surface = Json::parse(server_.get(kSurface).body);
-  for (const char* type : {"position", "trajectory", "area", "cube"}) EXPECT_TRUE(surface.at("data_queries").contains(type));
+  for (const char* type : {"position", "trajectory", "area", "cube"})
+    EXPECT_TRUE(surface.at("data_queries").contains(type));
 }
 
 TEST_F(EdrTest, ConformanceIsDeclaredWhereEveryCollectionHasAnExtent) {

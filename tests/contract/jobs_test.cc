@@ -155,7 +155,8 @@ class JobListTest : public JobsTest {
 
 TEST_F(JobListTest, ConditionsSelect) {
   EXPECT_EQ(listed("type=process").size(), 4u) << "three, and the one that occupies the worker";
-  EXPECT_EQ(listed("processID=simplify&status=accepted,successful"), (Ids{waits_, works_})) << "the latest first";
+  EXPECT_EQ(listed("processID=simplify&status=accepted,successful"), (Ids{waits_, works_}))
+      << "the latest first";
   EXPECT_EQ(listed("processID=simplify&status=running").size(), 1u);
   EXPECT_EQ(listed("processID=import,contours"), Ids{import_});
   EXPECT_EQ(listed("status=accepted"), Ids{waits_});
@@ -163,8 +164,10 @@ TEST_F(JobListTest, ConditionsSelect) {
   EXPECT_EQ(listed("status=successful&processID=simplify"), Ids{works_});
   EXPECT_EQ(listed("processID=nothing"), Ids{});
   EXPECT_EQ(listed("datetime=2000-01-01/2001-01-01"), Ids{});
-  EXPECT_EQ(listed("datetime=2000-01-01/..&processID=simplify&status=accepted,successful"), (Ids{waits_, works_}));
-  EXPECT_EQ(listed("maxDuration=3600&processID=simplify&status=accepted,successful"), Ids{works_}) << "one that has not begun has no duration";
+  EXPECT_EQ(listed("datetime=2000-01-01/..&processID=simplify&status=accepted,successful"),
+            (Ids{waits_, works_}));
+  EXPECT_EQ(listed("maxDuration=3600&processID=simplify&status=accepted,successful"), Ids{works_})
+      << "one that has not begun has no duration";
   EXPECT_EQ(listed("minDuration=3600"), Ids{});
   EXPECT_EQ(listed("minDuration=0&maxDuration=3600&processID=import"), Ids{import_});
 }
@@ -187,16 +190,18 @@ TEST_F(JobListTest, PagesFollowOneAnother) {
 }
 
 TEST_F(JobListTest, BadConditionsAre400) {
-  for (const char* query : {"type=wps", "status=lost", "status=", "status=running,", "datetime=today", "minDuration=-1", "minDuration=x",
-                            "maxDuration=1.5", "limit=0", "limit=10001", "next=1", "next=x.y", "next="}) {
+  for (const char* query :
+       {"type=wps", "status=lost", "status=", "status=running,", "datetime=today", "minDuration=-1",
+        "minDuration=x", "maxDuration=1.5", "limit=0", "limit=10001", "next=1", "next=x.y", "next="}) {
     EXPECT_EQ(server_.get(std::string("/jobs?") + query).status, 400) << query;
   }
 }
 
 TEST_F(JobListTest, PeopleSeePages) {
   const std::string html = "Accept: text/html\r\n";
-  for (const std::string target : {std::string("/jobs"), "/jobs/" + works_, std::string("/processes"), std::string("/processes/simplify"),
-                                   std::string("/tins"), std::string("/conformance")}) {
+  for (const std::string target :
+       {std::string("/jobs"), "/jobs/" + works_, std::string("/processes"),
+        std::string("/processes/simplify"), std::string("/tins"), std::string("/conformance")}) {
     const RawAnswer page = server_.get(target, html);
     EXPECT_EQ(page.status, 200);
     EXPECT_EQ(page.header("content-type"), "text/html; charset=utf-8") << target;

@@ -255,7 +255,8 @@ std::string shapefile() {
     put(out, i, true);
     put(out, kRecordWords, true);
     put(out, kPointZ);
-    for (const double value : {i == 2 ? 9. : 0., i == 3 ? 9. : 0., static_cast<double>(i), 0.}) put(out, value);
+    for (const double value : {i == 2 ? 9. : 0., i == 3 ? 9. : 0., static_cast<double>(i), 0.})
+      put(out, value);
   }
   return out;
 }
@@ -269,7 +270,8 @@ std::string zip_of(const std::string& name, const std::string& content) {
   }
   const auto size = static_cast<std::uint32_t>(content.size());
   std::string about;
-  for (const int number : {10, 0, 0, 0, 0x21}) put(about, static_cast<std::uint16_t>(number));  // version, flags, stored, time and date
+  for (const int number : {10, 0, 0, 0, 0x21})
+    put(about, static_cast<std::uint16_t>(number));  // version, flags, stored, time and date
   for (const std::uint32_t number : {~crc, size, size}) put(about, number);
   put(about, static_cast<std::uint16_t>(name.size()));
   put(about, std::uint16_t{0});
@@ -290,11 +292,15 @@ std::string zip_of(const std::string& name, const std::string& content) {
 
 TEST(LimitsTest, BytesUnpackedFromAnArchive) {
   const std::string shape = shapefile(), archive = zip_of("hill.shp", shape);
-  TestServer fits([&](server::Config& config) { config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size()); });
+  TestServer fits([&](server::Config& config) {
+    config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size());
+  });
   const RawAnswer made = fits.upload("/tins?id=hill", "application/zip", archive);
   EXPECT_EQ(made.status, 201) << made.body;
   EXPECT_EQ(fits.tin("hill").at("vertexCount"), 3);
-  TestServer narrow([&](server::Config& config) { config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size()) - 1; });
+  TestServer narrow([&](server::Config& config) {
+    config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size()) - 1;
+  });
   const std::string before = narrow.state();
   expect_too_large(narrow.upload("/tins?id=hill", "application/zip", archive));
   EXPECT_EQ(narrow.state(), before);

@@ -31,11 +31,32 @@ TEST(WktTest, ReadsEveryKindInLettersOfAnyCase) {
 }
 
 TEST(WktTest, RefusesWhatIsNone) {
-  for (const char* text :
-       {"", " ", "POINT", "POINT()", "POINT(1)", "POINT(1 2 3)", "POINT(1,2)", "POINT(1 2", "POINT 1 2", "POINT(1 2))", "POINT(1 2) x",
-        "POINT EMPTY", "POINT Z(1 2 3)", "POINTZ(1 2 3)", "POINT(1 2,3 4)", "POINT(0x1 2)", "LINESTRING(1 2)", "LINESTRING((1 2,3 4))",
-        "MULTILINESTRING(1 2,3 4)", "POLYGON((0 0,1 0,0 0))", "POLYGON((0 0,1 0,1 1,0 1))", "POLYGON(0 0,1 0,1 1,0 0)",
-        "MULTIPOINT((1 2)", "MULTIPOINT((1 2,3 4))", "GEOMETRYCOLLECTION(POINT(1 2))", "SRID=4326;POINT(1 2)"}) {
+  for (const char* text : {"",
+                           " ",
+                           "POINT",
+                           "POINT()",
+                           "POINT(1)",
+                           "POINT(1 2 3)",
+                           "POINT(1,2)",
+                           "POINT(1 2",
+                           "POINT 1 2",
+                           "POINT(1 2))",
+                           "POINT(1 2) x",
+                           "POINT EMPTY",
+                           "POINT Z(1 2 3)",
+                           "POINTZ(1 2 3)",
+                           "POINT(1 2,3 4)",
+                           "POINT(0x1 2)",
+                           "LINESTRING(1 2)",
+                           "LINESTRING((1 2,3 4))",
+                           "MULTILINESTRING(1 2,3 4)",
+                           "POLYGON((0 0,1 0,0 0))",
+                           "POLYGON((0 0,1 0,1 1,0 1))",
+                           "POLYGON(0 0,1 0,1 1,0 0)",
+                           "MULTIPOINT((1 2)",
+                           "MULTIPOINT((1 2,3 4))",
+                           "GEOMETRYCOLLECTION(POINT(1 2))",
+                           "SRID=4326;POINT(1 2)"}) {
     const auto found = parse_wkt(text, 100, "query:coords");
     ASSERT_FALSE(found.ok()) << text;
     EXPECT_EQ(found.error().code, Code::kMalformed) << text;

@@ -148,7 +148,8 @@ std::pair<double, double> steepest(const Terrain& terrain) {
     std::array<std::array<double, 3>, 3> c;
     for (int k = 0; k < 3; ++k) {
       const auto at = mesh.point(mesh.vertex(t, k));
-      c[static_cast<std::size_t>(k)] = {terrain.frame().x.world(at.x), terrain.frame().y.world(at.y), terrain.z(mesh.vertex(t, k))};
+      c[static_cast<std::size_t>(k)] = {terrain.frame().x.world(at.x), terrain.frame().y.world(at.y),
+                                        terrain.z(mesh.vertex(t, k))};
     }
     const double ux = c[1][0] - c[0][0], uy = c[1][1] - c[0][1], uz = c[1][2] - c[0][2];
     const double vx = c[2][0] - c[0][0], vy = c[2][1] - c[0][1], vz = c[2][2] - c[0][2];
@@ -165,8 +166,9 @@ TEST(TerrainTileTest, TheLowestLevelKeepsToItsStatedError) {
   check_errors(aligned_grid(64));
 }
 
-/// A step of a tile is some decimetres; the stated error is that times the steepest slope, not more. Where the terrain has no
-/// needles it says little. Among random vertices there are some, mostly on the hull, and over those a tile really is off.
+/// A step of a tile is some decimetres; the stated error is that times the steepest slope, not more. Where
+/// the terrain has no needles it says little. Among random vertices there are some, mostly on the hull, and
+/// over those a tile really is off.
 TEST(TerrainTileTest, TheStatedErrorIsAStepOnTheSteepestSlope) {
   SCOPED_TRACE(support::seed());
   EXPECT_LT(stated_error(aligned_grid(64)), 0.5);

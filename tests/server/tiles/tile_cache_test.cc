@@ -100,8 +100,8 @@ TEST_F(TileCacheTest, EveryTenthLevelListsTheTilesBelow) {
       list += list.empty() ? "" : ",";
       const auto text = [](std::uint32_t n) { return std::to_string(n); };
       list += r[0] > r[2] ? "[]"
-                          : "[{\"startX\":" + text(r[0]) + ",\"startY\":" + text(r[1]) + ",\"endX\":" + text(r[2]) +
-                                ",\"endY\":" + text(r[3]) + "}]";
+                          : "[{\"startX\":" + text(r[0]) + ",\"startY\":" + text(r[1]) +
+                                ",\"endX\":" + text(r[2]) + ",\"endY\":" + text(r[3]) + "}]";
     }
     return "\"available\":[" + list + "]";
   };
@@ -112,12 +112,15 @@ TEST_F(TileCacheTest, EveryTenthLevelListsTheTilesBelow) {
   }
   for (const TileId& id : listing) {
     const auto tile = decode_tile(gunzipped(get(TileKind::kTerrain, id)->bytes));
-    EXPECT_NE(tile.metadata.find(ranges(id)), std::string::npos) << id.z << "/" << id.x << "/" << id.y << ": " << tile.metadata
-                                                                 << " lacks " << ranges(id);
+    EXPECT_NE(tile.metadata.find(ranges(id)), std::string::npos)
+        << id.z << "/" << id.x << "/" << id.y << ": " << tile.metadata << " lacks " << ranges(id);
   }
   const auto below = tiles.available(11);
-  EXPECT_EQ(decode_tile(gunzipped(get(TileKind::kTerrain, {11, below[0], below[1]})->bytes)).metadata.find("available"), std::string::npos);
-  // A vertex far out widens the terrain's extent, and so what lies below tiles that no triangle of it touches.
+  EXPECT_EQ(decode_tile(gunzipped(get(TileKind::kTerrain, {11, below[0], below[1]})->bytes))
+                .metadata.find("available"),
+            std::string::npos);
+  // A vertex far out widens the terrain's extent, and so what lies below tiles that no triangle of it
+  // touches.
   TileCache forgetful(0);
   insert(500000, 5240000, 600);
   for (const TileId& id : listing)
