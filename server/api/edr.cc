@@ -201,12 +201,21 @@ double node(const SurfaceCoverage::Axis& axis, std::int64_t i) {
   return axis.start + (axis.stop - axis.start) * static_cast<double>(i) / static_cast<double>(axis.count - 1);
 }
 
-/// A grid over a box, without elevations. Errors: kMalformed, kTooLarge.
-Result<SurfaceCoverage> lay_grid(const Context& context, const Request& request, const Terrain& terrain,
-                                 const Extent& all, const Extent& box) {
+/// How many nodes a query wants along x and y.
+struct Resolution {
+  std::optional<std::int64_t> x, y;
+};
+
+Result<Resolution> read_resolutions(const Request& request) {
   const auto x = read_resolution(request, "resolution-x"), y = read_resolution(request, "resolution-y");
   if (!x) return x.error();
   if (!y) return y.error();
+  return Resolution{*x, *y};
+}
+
+/// A grid over a box, without elevations. Errors: kTooLarge.
+Result<SurfaceCoverage> lay_grid(const Context& context, const Resolution& wanted, const Terrain& terrain,
+                                 const Extent& all, const Extent& box) {
   const double cell = std::sqrt((all.max_x - all.min_x) * (all.max_y - all.min_y) /
                                 static_cast<double>(std::max<std::size_t>(1, terrain.vertex_count())));
   const auto as_vertices = [cell](double length) {
@@ -223,8 +232,8 @@ Result<SurfaceCoverage> lay_grid(const Context& context, const Request& request,
     return *asked == 0 ? as_vertices(length) : *asked;
   };
   SurfaceCoverage grid;
-  grid.x = axis(box.min_x, box.max_x, choose(*x, box.max_x - box.min_x));
-  grid.y = axis(box.min_y, box.max_y, choose(*y, box.max_y - box.min_y));
+  grid.x = axis(box.min_x, box.max_x, choose(wanted.x, box.max_x - box.min_x));
+  grid.y = axis(box.min_y, box.max_y, choose(wanted.y, box.max_y - box.min_y));
   if (grid.x.count > kMostNodes || grid.y.count > kMostNodes || grid.x.count * grid.y.count > most) {
     return error(Code::kTooLarge,
                  "The answer would have more than " + std::to_string(most) + " positions, or more than " +
@@ -279,6 +288,8 @@ std::optional<Extent> common(const Extent& a, const Extent& b) {
 /// surface.
 Result<Coverages> sample_grid(Context& context, const Request& request, const Asked& asked, const Extent& box,
                               const std::vector<std::vector<WktGeometry::Sequence>>& polygons) {
+  const auto resolution = read_resolutions(request);
+  if (!resolution) return resolution.error();
   const Slot slot(context.exports);
   if (!slot.taken()) return error(Code::kTooMany, "Too many long questions are being answered; try again.");
   const Terrain& terrain = *asked.version.terrain;
@@ -288,7 +299,7 @@ Result<Coverages> sample_grid(Context& context, const Request& request, const As
   if (!all) return as_bad_parameter(all.error());
   const auto part = common(*all, box);
   if (!part) return Coverages{};
-  auto grid = lay_grid(context, request, terrain, *all, *part);
+  auto grid = lay_grid(context, *resolution, terrain, *all, *part);
   if (!grid) return grid.error();
   RowMask mask(polygons);
   std::vector<bool> inside(static_cast<std::size_t>(grid->x.count), true);

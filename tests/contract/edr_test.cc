@@ -68,18 +68,18 @@ TEST_F(EdrTest, ThePositionOfAPoint) {
 }
 
 TEST_F(EdrTest, WithoutACrsCoordinatesAreLongitudeAndLatitude) {
-  const Json coverage = covjson("/position?coords=POINT(-80.9995%2040.6505)");
+  const Json coverage = covjson("/position?coords=POINT(-80.9995%2040.6513)");
   EXPECT_EQ(coverage.at("domain").at("referencing").at(0).at("system").at("id"),
             "http://www.opengis.net/def/crs/OGC/1.3/CRS84");
   EXPECT_NEAR(values(coverage).at(0).get<double>(), 14.23, 0.05);
   // EPSG:4326 has latitude first; x stays longitude in CoverageJSON, whose referencing says the order.
-  const Json swapped = covjson("/position?coords=POINT(40.6505%20-80.9995)&crs=EPSG:4326");
+  const Json swapped = covjson("/position?coords=POINT(40.6513%20-80.9995)&crs=EPSG:4326");
   EXPECT_EQ(values(swapped), values(coverage));
   EXPECT_EQ(swapped.at("domain").at("referencing").at(0).at("coordinates"), Json({"y", "x"}));
   EXPECT_EQ(swapped.at("domain").at("axes"), coverage.at("domain").at("axes"));
-  const Json features = geojson("/position?coords=POINT(40.6505%20-80.9995)&crs=EPSG:4326");
-  EXPECT_EQ(features.at("features").at(0).at("geometry").at("coordinates").at(0), 40.6505);
-  EXPECT_EQ(server_.get(kSurface + "/position?coords=POINT(40.6505%20-80.9995)&crs=EPSG:4326")
+  const Json features = geojson("/position?coords=POINT(40.6513%20-80.9995)&crs=EPSG:4326");
+  EXPECT_EQ(features.at("features").at(0).at("geometry").at("coordinates").at(0), 40.6513);
+  EXPECT_EQ(server_.get(kSurface + "/position?coords=POINT(40.6513%20-80.9995)&crs=EPSG:4326")
                 .header("content-crs"),
             "<http://www.opengis.net/def/crs/EPSG/0/4326>");
 }
@@ -159,7 +159,7 @@ TEST_F(EdrTest, ACubeIsAGridFromEndToEnd) {
   const Json stored =
       covjson(std::string("/cube?bbox=500000,4500000,500100,4500100&resolution-x=0&resolution-y=0") + kUtm);
   EXPECT_EQ(stored.at("ranges").at("elevation").at("shape"), Json({3, 3})) << "as close as vertices lie";
-  const Json lon_lat = covjson("/cube?bbox=-80.9999,40.6503,-80.9990,40.6508");
+  const Json lon_lat = covjson("/cube?bbox=-80.9999,40.6511,-80.9990,40.6515");
   EXPECT_EQ(lon_lat.at("domain").at("referencing").at(0).at("system").at("type"), "GeographicCRS");
   for (const Json& z : values(lon_lat)) EXPECT_TRUE(z.get<double>() >= 10 && z.get<double>() <= 20);
 }
@@ -262,7 +262,7 @@ TEST_F(EdrTest, LimitsHold) {
 }
 
 TEST_F(EdrTest, FormatsByNameAndByAccept) {
-  const std::string target = kSurface + "/position?coords=POINT(-80.9995%2040.6505)";
+  const std::string target = kSurface + "/position?coords=POINT(-80.9995%2040.6513)";
   const RawAnswer geojson = server_.get(target, "Accept: application/geo+json\r\n");
   EXPECT_EQ(geojson.header("content-type"), "application/geo+json");
   EXPECT_EQ(geojson.header("vary").find("Accept") != std::string::npos, true);

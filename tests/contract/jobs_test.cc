@@ -144,7 +144,8 @@ class JobListTest : public JobsTest {
     EXPECT_EQ(answer.status, 200) << query << answer.body;
     std::vector<std::string> ids;
     if (answer.status != 200) return ids;
-    for (const Json& job : Json::parse(answer.body).at("jobs")) ids.push_back(job.at("jobID"));
+    const Json list = Json::parse(answer.body);
+    for (const Json& job : list.at("jobs")) ids.push_back(job.at("jobID"));
     return ids;
   }
 
@@ -199,7 +200,7 @@ TEST_F(JobListTest, BadConditionsAre400) {
 
 TEST_F(JobListTest, PeopleSeePages) {
   const std::string html = "Accept: text/html\r\n";
-  for (const std::string target :
+  for (const std::string& target :
        {std::string("/jobs"), "/jobs/" + works_, std::string("/processes"),
         std::string("/processes/simplify"), std::string("/tins"), std::string("/conformance")}) {
     const RawAnswer page = server_.get(target, html);
