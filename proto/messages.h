@@ -182,6 +182,14 @@ std::string conformance_json(std::span<const std::string> classes);
 std::string health_json(std::string_view status, std::string_view version);
 
 /// One OGC feature collection of a TIN.
+/// A way to query a collection as OGC API EDR knows them: "position", "items" ...
+struct DataQuery {
+  std::string type;
+  std::string href;
+  std::string title;
+  std::vector<std::string> formats;  // the first is the default
+};
+
 struct CollectionDocument {
   std::string id;
   std::string title;
@@ -191,12 +199,17 @@ struct CollectionDocument {
   std::string storage_crs;                    // URI; left out when empty
   bool features = true;                       // has items; else it is a coverage
   std::vector<Link> links;
+  std::vector<DataQuery> queries;
+  std::vector<std::string> formats;  // of all queries
+  std::string vertical_unit;         // of elevations; empty: not known
 };
 std::string collection_json(const CollectionDocument& collection);
 std::string collections_json(std::span<const CollectionDocument> collections, std::span<const Link> links);
 
 enum class JobState { kAccepted, kRunning, kSuccessful, kFailed, kDismissed };
 std::string_view job_state_name(JobState state);
+/// Nothing for other names.
+std::optional<JobState> job_state(std::string_view name);
 
 /// Times are RFC 3339 texts in UTC; those that are empty are left out, as is an empty message.
 struct JobStatus {

@@ -34,6 +34,7 @@ using Numbers = std::map<std::string, Number>;  // by JSON pointer
 Numbers numbers_of(LimitConfig& limits) {
   return {{"/limits/body_bytes_memory", {&limits.body_bytes_memory, 1024, 4 * kGiB}},
           {"/limits/upload_bytes", {&limits.upload_bytes, 1024, 1024 * kGiB}},
+          {"/limits/unpacked_bytes", {&limits.unpacked_bytes, 1, 1024 * kGiB}},
           {"/limits/raster_pixels", {&limits.raster_pixels, 1, kGiB}},
           {"/limits/export_pixels", {&limits.export_pixels, 1, 16 * kGiB}},
           {"/limits/memory_bytes", {&limits.memory_bytes, 0, 1024 * 1024 * kGiB}},

@@ -11,6 +11,7 @@
 #include "proto/coverage_documents.h"
 #include "proto/crs_uri.h"
 #include "server/api/collections.h"
+#include "server/api/edr.h"
 #include "server/api/export_grid.h"
 #include "server/api/feature_query.h"
 #include "server/api/links.h"
@@ -277,7 +278,7 @@ Result<Response> surface(Context& context, const Request& request) {
   const app::Summary summary = (*tin)->summary();
   if (!has_surface(summary)) return error(Code::kNotFound, "The TIN has no surface with a place on the globe.");
   auto document = surface_document(**tin, summary);
-  make_absolute(document.links, base_url(context.config, request));
+  make_absolute(document, base_url(context.config, request));
   const HtmlPage page{document.title, document.description, document.links, {}, {}, {}};
   Response response = negotiated(request, proto::collection_json(document), kJson, page);
   response.headers.emplace_back("ETag", negotiated_tag(**tin, summary.revision, request));
@@ -305,6 +306,8 @@ proto::CollectionDocument surface_document(const app::Tin& tin, const app::Summa
                     {self + "/coverage", relations + "coverage", std::string(kTiff), "Elevations"},
                     {self + "/coverage/domainset", relations + "coverage-domainset", std::string(kJson), "Where they are"},
                     {self + "/coverage/rangetype", relations + "coverage-rangetype", std::string(kJson), "What they are"}};
+  add_queries(document, self);
+  document.vertical_unit = summary.frame.vertical_unit;
   return document;
 }
 

@@ -1,5 +1,5 @@
 // /tins/{tin}/elevation: one position by GET, many by POST.
-#include "tin/query/elevation.h"
+#include "server/api/elevation.h"
 
 #include <algorithm>
 #include <bit>
@@ -108,12 +108,6 @@ std::optional<Response> one_at_once(const Context& context, const Request& reque
   return one_answer(**tin, request, *answer);
 }
 
-/// How positions between samples get their elevation.
-struct Manner {
-  proto::Voids voids = proto::Voids::kKeep;
-  tin::query::Interpolation by = tin::query::Interpolation::kLinear;
-};
-
 constexpr std::size_t kAtOnce = 4000;  // positions that are located together
 
 /// Fills z[indices[k]] with the elevation at points[k]. Many walks at a time hide the time that memory takes.
@@ -130,7 +124,7 @@ void look_up_block(const Terrain& terrain, ElevationQuery& query, std::span<cons
 
 /// Elevations at positions in the TIN's CRS, those with `ok`. Many are taken along the Hilbert curve, as the
 /// terrain is stored: each block of them stays in the caches.
-std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const Manner& manner,
+std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const ElevationManner& manner,
                                                std::span<const double> x, std::span<const double> y,
                                                std::span<const std::uint8_t> ok) {
   std::vector<tin::exact::Point> points;
@@ -167,16 +161,19 @@ std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const Man
   return z;
 }
 
-/// Elevations at positions of `crs`; nothing where there is none.
-Result<std::vector<std::optional<double>>> elevations(const Terrain& terrain, std::string_view crs,
-                                                      std::string where, const Manner& manner,
-                                                      std::vector<double> x, std::vector<double> y) {
+}  // namespace
+
+Result<std::vector<std::optional<double>>> elevations_at(const Terrain& terrain, std::string_view crs,
+                                                         std::string where, const ElevationManner& manner,
+                                                         std::vector<double> x, std::vector<double> y) {
   auto positions = Positions::between(crs, terrain.frame().crs, std::move(where));
   if (!positions) return positions.error();
   std::vector<std::uint8_t> ok;
   positions->convert(x, y, ok);
   return look_up_all(terrain, manner, x, y, ok);
 }
+
+namespace {
 
 // Doubles travel as they lie in memory.
 static_assert(std::endian::native == std::endian::little && std::numeric_limits<double>::is_iec559);
@@ -212,7 +209,7 @@ Result<Response> many_doubles(const Context& context, const app::Tin& tin, const
     if (!name) return name.error();
     crs = *name;
   }
-  const auto z = elevations(*version.terrain, crs, "query:crs", {*voids, *by}, std::move(x), std::move(y));
+  const auto z = elevations_at(*version.terrain, crs, "query:crs", {*voids, *by}, std::move(x), std::move(y));
   if (!z) return z.error();
   std::string bytes(z->size() * sizeof(double), '\0');
   for (std::size_t i = 0; i < z->size(); ++i) {
@@ -245,7 +242,7 @@ Result<Response> many(Context& context, const Request& request) {
     x.push_back(position.x);
     y.push_back(position.y);
   }
-  const auto z = elevations(*version.terrain, message->crs.value_or(version.terrain->frame().crs), "/crs",
+  const auto z = elevations_at(*version.terrain, message->crs.value_or(version.terrain->frame().crs), "/crs",
                             {message->voids, message->interpolation}, std::move(x), std::move(y));
   if (!z) return z.error();
   Response response = json_answer(proto::elevations_json(*z, version.revision));

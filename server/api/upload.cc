@@ -106,6 +106,7 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   options.z_field = request.query_value("z-field").value_or("");
   options.max_samples = static_cast<std::uint64_t>(context.config.limits.vertices_per_tin);
   import.decoder = context.decoder;
+  options.max_unpacked_bytes = static_cast<std::uint64_t>(context.config.limits.unpacked_bytes);
   options.max_pixels = static_cast<std::uint64_t>(context.config.limits.raster_pixels);
   if (const auto crs = request.query_value("crs")) {
     const auto name = proto::parse_crs(*crs, "query:crs");
@@ -150,7 +151,7 @@ Result<Response> import_as_job(Context& context, Request& request, app::ImportRe
         return proto::tin_json(tin_document(**made));
       });
   if (!job) return job.error();
-  return job_accepted_answer(context.jobs, *job);
+  return job_accepted_answer(context.jobs, *job, request);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // Every limit of the configuration: at the limit all is well, one past it is refused and changes nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <functional>
 #include <thread>
 
@@ -261,6 +263,78 @@ TEST(LimitsTest, BytesOfAnUploadWithAndWithoutALength) {
   EXPECT_EQ(server.leftovers(), std::set<std::string>{});
   EXPECT_EQ(server.state(), before);
   EXPECT_EQ(chunked(grid).status, 201);
+}
+
+/// Numbers of files, the lowest byte first, or the highest.
+template <class T>
+void put(std::string& out, T value, bool highest_first = false) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  if (highest_first) std::reverse(bytes, bytes + sizeof value);
+  out.append(bytes, sizeof value);
+}
+
+/// A shapefile of three points with heights.
+std::string shapefile() {
+  constexpr std::int32_t kPointZ = 11, kRecordWords = 18;
+  std::string out;
+  const std::int32_t words = 50 + 3 * (4 + kRecordWords);
+  for (const std::int32_t number : {9994, 0, 0, 0, 0, 0, words}) put(out, number, true);
+  for (const std::int32_t number : {1000, kPointZ}) put(out, number);
+  for (const double bound : {0., 0., 9., 9., 1., 3., 0., 0.}) put(out, bound);
+  for (std::int32_t i = 1; i <= 3; ++i) {
+    put(out, i, true);
+    put(out, kRecordWords, true);
+    put(out, kPointZ);
+    for (const double value : {i == 2 ? 9. : 0., i == 3 ? 9. : 0., static_cast<double>(i), 0.})
+      put(out, value);
+  }
+  return out;
+}
+
+/// A ZIP archive that holds one file as it is.
+std::string zip_of(const std::string& name, const std::string& content) {
+  std::uint32_t crc = ~0U;
+  for (const char c : content) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0xEDB88320U : 0);
+  }
+  const auto size = static_cast<std::uint32_t>(content.size());
+  std::string about;
+  for (const int number : {10, 0, 0, 0, 0x21})
+    put(about, static_cast<std::uint16_t>(number));  // version, flags, stored, time and date
+  for (const std::uint32_t number : {~crc, size, size}) put(about, number);
+  put(about, static_cast<std::uint16_t>(name.size()));
+  put(about, std::uint16_t{0});
+  std::string out = "PK\003\004" + about + name + content, directory = "PK\001\002";
+  put(directory, std::uint16_t{10});
+  directory += about;
+  for (int i = 0; i < 3; ++i) put(directory, std::uint16_t{0});
+  for (int i = 0; i < 2; ++i) put(directory, std::uint32_t{0});
+  directory += name;
+  const auto begin = static_cast<std::uint32_t>(out.size());
+  out += directory + "PK\005\006";
+  for (const int number : {0, 0, 1, 1}) put(out, static_cast<std::uint16_t>(number));
+  put(out, static_cast<std::uint32_t>(directory.size()));
+  put(out, begin);
+  put(out, std::uint16_t{0});
+  return out;
+}
+
+TEST(LimitsTest, BytesUnpackedFromAnArchive) {
+  const std::string shape = shapefile(), archive = zip_of("hill.shp", shape);
+  TestServer fits([&](server::Config& config) {
+    config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size());
+  });
+  const RawAnswer made = fits.upload("/tins?id=hill", "application/zip", archive);
+  EXPECT_EQ(made.status, 201) << made.body;
+  EXPECT_EQ(fits.tin("hill").at("vertexCount"), 3);
+  TestServer narrow([&](server::Config& config) {
+    config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size()) - 1;
+  });
+  const std::string before = narrow.state();
+  expect_too_large(narrow.upload("/tins?id=hill", "application/zip", archive));
+  EXPECT_EQ(narrow.state(), before);
 }
 
 TEST(LimitsTest, PixelsOfARaster) {
