@@ -11,6 +11,7 @@
 #include "server/api/tin_document.h"
 #include "server/api/upload.h"
 #include "server/app/source.h"
+#include "server/app/threads.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -207,7 +208,7 @@ Result<Response> create_from_json(Context& context, const Request& request) {
     if (!at) return within("/vertices/" + std::to_string(i), at.error());
     placements.push_back({*at, message->vertices[i].z});
   }
-  auto terrain = Terrain::build(*frame, placements, message->duplicates);
+  auto terrain = Terrain::build(*frame, placements, message->duplicates, nullptr, app::engine_threads());
   if (!terrain) return within("/vertices", terrain.error());
   std::string source;
   if (!placements.empty())

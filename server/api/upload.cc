@@ -8,6 +8,7 @@
 #include "server/api/tin_document.h"
 #include "server/app/import.h"
 #include "server/app/simplify.h"
+#include "server/app/threads.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -58,7 +59,7 @@ Result<std::optional<tin::simplify::Options>> read_simplification(const Request&
     return error(Code::kInvalidValue, "A tolerance must not be negative.", "query:tolerance");
   tin::simplify::Options options;
   options.tolerance = *tolerance;
-  options.threads = app::simplify_threads();
+  options.threads = app::engine_threads();
   if (effort) {
     const auto named = proto::parse_effort(*effort, "query:effort");
     if (!named) return named.error();

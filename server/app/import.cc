@@ -2,6 +2,7 @@
 
 #include "server/app/source.h"
 #include "server/app/thinning.h"
+#include "server/app/threads.h"
 #include "server/app/time_budget.h"
 
 namespace server::app {
@@ -21,7 +22,7 @@ SourceSamples raster_source(gdal::Import& import) {
 
 /// Every sample becomes a vertex.
 Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, Progress& progress) {
-  auto terrain = Terrain::build(std::move(import.frame), import.placements, duplicates, &progress);
+  auto terrain = Terrain::build(std::move(import.frame), import.placements, duplicates, &progress, engine_threads());
   if (!terrain) return terrain.error();
   import.placements = {};
   terrain->set_source_grid(import.grid);
@@ -35,7 +36,8 @@ Result<ImportedTerrain> build_from_heights(gdal::Import import, const tin::simpl
   SourceSamples source = raster_source(import);
   auto chosen = tin::simplify::simplify_samples(source, options, &progress);
   if (!chosen) return chosen.error();
-  auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress);
+  auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress,
+                                engine_threads());
   if (!terrain) return terrain.error();
   terrain->set_source_grid(import.grid);
   return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, false, std::move(import.driver)};

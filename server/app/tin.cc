@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "server/app/threads.h"
 #include "tin/codec/change.h"
 #include "tin/codec/checkpoint.h"
 #include "tin/codec/source.h"
@@ -238,7 +239,7 @@ std::string Tin::encode(const Terrain& terrain, tin::terrain::Duplicates duplica
 Result<TinState> Tin::decode(const store::TinRecord& record, std::string_view bytes) {
   auto checkpoint = tin::codec::decode_checkpoint(bytes);
   if (!checkpoint) return checkpoint.error();
-  auto terrain = Terrain::restore(checkpoint->frame, checkpoint->vertices, checkpoint->next_id);
+  auto terrain = Terrain::restore(checkpoint->frame, checkpoint->vertices, checkpoint->next_id, engine_threads());
   if (!terrain) return terrain.error();
   if (terrain->digest() != checkpoint->digest) {
     return error(Code::kStorage, "The checkpoint's digest is not that of its vertices.");

@@ -2,6 +2,7 @@
 // simplification in.
 #include <algorithm>
 
+#include "server/app/threads.h"
 #include "server/app/tin.h"
 #include "tin/codec/change.h"
 #include "tin/terrain/vertex_set.h"
@@ -35,7 +36,7 @@ Result<Terrain::Applied> replay(Terrain& terrain, const Change& change) {
 Result<std::shared_ptr<Terrain>> replayed(const Terrain& terrain, const Change& change) {
   VertexSet set(terrain.vertices_by_id(), terrain.next_id());
   if (auto done = set.replay(change); !done) return done.error();
-  auto built = Terrain::restore(terrain.frame(), set.vertices(), set.next_id());
+  auto built = Terrain::restore(terrain.frame(), set.vertices(), set.next_id(), engine_threads());
   if (!built) return error(Code::kConflict, "Another vertex stands where one would return to.");
   built->set_source_grid(terrain.shared_source_grid());
   built->set_amendments(terrain.amendments());
