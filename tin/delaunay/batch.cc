@@ -33,8 +33,8 @@ bool go_on(base::Progress* progress, std::size_t done, std::size_t all) {
   return !progress->cancelled();
 }
 
-/// Brings the stars of the next few vertices to be removed into the caches. A star is walked from triangle to triangle, each
-/// a wait for memory; walking many in turns makes them wait together.
+/// Brings the stars of the next few vertices to be removed into the caches. A star is walked from triangle to
+/// triangle, each a wait for memory; walking many in turns makes them wait together.
 class StarFetcher {
  public:
   explicit StarFetcher(const Mesh& mesh) : mesh_(mesh) {}
@@ -79,7 +79,8 @@ std::vector<VertexSlot> in_slot_order(const Mesh& mesh, std::span<const VertexSl
     return order;
   }
   std::vector<std::uint64_t> wanted(mesh.vertex_slots() / kBitsPerWord + 1);
-  for (const VertexSlot v : slots) wanted[v.value() / kBitsPerWord] |= std::uint64_t{1} << v.value() % kBitsPerWord;
+  for (const VertexSlot v : slots)
+    wanted[v.value() / kBitsPerWord] |= std::uint64_t{1} << v.value() % kBitsPerWord;
   std::size_t count = 0;
   for (std::uint32_t word = 0; word < wanted.size(); ++word) {
     for (std::uint64_t bits = wanted[word]; bits != 0; bits &= bits - 1) {
@@ -164,7 +165,8 @@ class Storing {
   void close_gap(unsigned part, std::size_t count) {
     const std::size_t first = begin(part), end = begin(part + 1);
     for (std::size_t k = 1; k <= kept_[part]; ++k) {
-      mesh_.set_point(VertexSlot(static_cast<std::uint32_t>(count + k)), mesh_.point(VertexSlot(static_cast<std::uint32_t>(first + k))));
+      mesh_.set_point(VertexSlot(static_cast<std::uint32_t>(count + k)),
+                      mesh_.point(VertexSlot(static_cast<std::uint32_t>(first + k))));
     }
     for (std::size_t i = first; i < end; ++i) {
       VertexSlot& slot = slots_[sorted_[i].index];
@@ -182,18 +184,20 @@ class Storing {
 
 }  // namespace
 
-bool Triangulation::insert_many(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
-                                unsigned threads) {
+bool Triangulation::insert_many(std::span<const Point> points, std::vector<VertexSlot>& slots,
+                                base::Progress* progress, unsigned threads) {
   slots.assign(points.size(), VertexSlot(kNone));
-  const bool done = mesh().vertex_count() == 0 ? build(points, slots, progress, threads) : insert_more(points, slots, progress);
+  const bool done = mesh().vertex_count() == 0 ? build(points, slots, progress, threads)
+                                               : insert_more(points, slots, progress);
   base_.forget_fresh();
   return done;
 }
 
-bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
-                          unsigned threads) {
+bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>& slots,
+                          base::Progress* progress, unsigned threads) {
   if (points.empty()) return true;
-  threads = static_cast<unsigned>(std::clamp<std::size_t>(points.size() / kWorthAThread, 1, std::max(threads, 1U)));
+  threads =
+      static_cast<unsigned>(std::clamp<std::size_t>(points.size() / kWorthAThread, 1, std::max(threads, 1U)));
   Mesh& mesh = base_.mutable_mesh();
   mesh = Mesh();
   Storing(points, slots, mesh, threads).run();
@@ -206,8 +210,10 @@ bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>
   return true;
 }
 
-/// Along the Hilbert curve, each walk from the grid's hint or from the last vertex, whichever should be nearer.
-bool Triangulation::insert_more(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress) {
+/// Along the Hilbert curve, each walk from the grid's hint or from the last vertex, whichever should be
+/// nearer.
+bool Triangulation::insert_more(std::span<const Point> points, std::vector<VertexSlot>& slots,
+                                base::Progress* progress) {
   const auto sorted = hilbert_sorted(points);
   const std::size_t count = sorted.size();
   std::size_t done = 0;
@@ -227,8 +233,10 @@ bool Triangulation::insert_more(std::span<const Point> points, std::vector<Verte
   return true;
 }
 
-/// Asks for what the insertions after the i-th will touch: a cell of the grid, then its triangle, then what is around that.
-void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span<const OnCurve> order, std::size_t i) const {
+/// Asks for what the insertions after the i-th will touch: a cell of the grid, then its triangle, then what
+/// is around that.
+void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span<const OnCurve> order,
+                                        std::size_t i) const {
   if (i + 3 * kAhead < order.size()) grid_.prefetch_cell(points[order[i + 3 * kAhead].index]);
   if (i + 2 * kAhead < order.size()) {
     const TriangleSlot t = grid_.hint(points[order[i + 2 * kAhead].index]);
@@ -244,8 +252,8 @@ void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span
   }
 }
 
-/// In the order of their slots where that follows the ground, as it does in a mesh that was built or compacted; else along the
-/// curve, which takes longer to find.
+/// In the order of their slots where that follows the ground, as it does in a mesh that was built or
+/// compacted; else along the curve, which takes longer to find.
 bool Triangulation::remove_many(std::span<const VertexSlot> slots, base::Progress* progress) {
   std::vector<VertexSlot> order = in_slot_order(mesh(), slots);
   if (!follows_the_ground(mesh(), order)) order = along_the_curve(mesh(), order);

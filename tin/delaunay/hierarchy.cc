@@ -34,7 +34,8 @@ Hierarchy::Found Hierarchy::find(const Mesh& mesh, Point p, VertexSlot from, std
   if (mesh.dimension() < 2) {
     const auto line = mesh.line();
     if (line.empty()) return {VertexSlot(kNone), false};
-    const auto at = std::lower_bound(line.begin(), line.end(), p, [&](VertexSlot v, Point q) { return mesh.point(v) < q; });
+    const auto at = std::lower_bound(line.begin(), line.end(), p,
+                                     [&](VertexSlot v, Point q) { return mesh.point(v) < q; });
     const VertexSlot v = at == line.end() ? line.back() : *at;
     return {v, mesh.point(v) == p};
   }
@@ -120,7 +121,8 @@ void Hierarchy::renumber(const std::vector<VertexSlot>& new_of_old) {
 
 std::size_t Hierarchy::bytes() const {
   std::size_t sum = levels_.capacity() * sizeof(Level);
-  for (const Level& level : levels_) sum += level.layer.mesh().bytes() + level.below.capacity() * sizeof(VertexSlot);
+  for (const Level& level : levels_)
+    sum += level.layer.mesh().bytes() + level.below.capacity() * sizeof(VertexSlot);
   return sum;
 }
 

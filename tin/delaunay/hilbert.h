@@ -11,9 +11,9 @@ namespace tin::delaunay {
 
 namespace internal {
 
-/// One step down four levels of the curve: from the orientation of the cell and four bits of x and of y to the eight bits of
-/// the index (low byte) and the orientation of the cell reached (high byte). An orientation is made of two bits: 1, x and y
-/// are exchanged; 2, both run backwards.
+/// One step down four levels of the curve: from the orientation of the cell and four bits of x and of y to
+/// the eight bits of the index (low byte) and the orientation of the cell reached (high byte). An orientation
+/// is made of two bits: 1, x and y are exchanged; 2, both run backwards.
 constexpr std::uint16_t hilbert_step(std::uint32_t orientation, std::uint32_t x, std::uint32_t y) {
   std::uint32_t index = 0;
   for (int level = 3; level >= 0; --level) {
@@ -40,13 +40,14 @@ inline constexpr auto kHilbertTable = make_hilbert_table();
 
 }  // namespace internal
 
-/// The curve through a square that holds given points, no larger than it must be: the fewer its bits, the more of them fit
-/// a sort key.
+/// The curve through a square that holds given points, no larger than it must be: the fewer its bits, the
+/// more of them fit a sort key.
 class HilbertCurve {
  public:
   /// Through all points of [low, high]. Requires: low <= high in both coordinates.
   constexpr HilbertCurve(exact::Point low, exact::Point high) : low_(low) {
-    const auto width = static_cast<std::uint32_t>(high.x - low.x), height = static_cast<std::uint32_t>(high.y - low.y);
+    const auto width = static_cast<std::uint32_t>(high.x - low.x),
+               height = static_cast<std::uint32_t>(high.y - low.y);
     bits_ = static_cast<int>(std::bit_width(width | height));
   }
 
@@ -59,7 +60,8 @@ class HilbertCurve {
     std::uint64_t index = 0;
     std::uint32_t orientation = 0;
     for (int shift = (bits_ - 1) & ~3; shift >= 0; shift -= 4) {
-      const std::uint16_t step = internal::kHilbertTable[orientation << 8 | (x >> shift & 15U) << 4 | (y >> shift & 15U)];
+      const std::uint16_t step =
+          internal::kHilbertTable[orientation << 8 | (x >> shift & 15U) << 4 | (y >> shift & 15U)];
       index = index << 8 | (step & 255U);
       orientation = step >> 8;
     }

@@ -40,7 +40,8 @@ struct Digit {
   }
 };
 
-/// About four items to a bucket, so that the next round ends. `differ` has a bit where two keys differ, and is not 0.
+/// About four items to a bucket, so that the next round ends. `differ` has a bit where two keys differ, and
+/// is not 0.
 Digit choose_digit(std::uint32_t differ, std::size_t n) {
   const int top = 32 - std::countl_zero(differ);
   const int wanted = std::clamp(static_cast<int>(std::bit_width(n)) - 3, 3, kMaxDigit);
@@ -65,7 +66,8 @@ void sort_range(OnCurve* a, OnCurve* scratch, std::size_t n) {
   std::fill_n(ends.begin(), buckets + 1, 0);
   for (std::size_t i = 0; i < n; ++i) ++ends[digit.of(a[i]) + 1];
   for (std::size_t b = 1; b <= buckets; ++b) ends[b] += ends[b - 1];
-  for (std::size_t i = 0; i < n; ++i) scratch[ends[digit.of(a[i])]++] = a[i];  // ends[b] becomes the end of bucket b
+  for (std::size_t i = 0; i < n; ++i)
+    scratch[ends[digit.of(a[i])]++] = a[i];  // ends[b] becomes the end of bucket b
   std::copy_n(scratch, n, a);
   std::size_t begin = 0;
   for (std::size_t b = 0; b < buckets; ++b) {
@@ -74,10 +76,12 @@ void sort_range(OnCurve* a, OnCurve* scratch, std::size_t n) {
   }
 }
 
-/// The first round on several threads: each counts and scatters its part of the input into buckets common to all.
+/// The first round on several threads: each counts and scatters its part of the input into buckets common to
+/// all.
 class FirstRound {
  public:
-  FirstRound(mesh::PageVector<OnCurve>& items, mesh::PageVector<OnCurve>& scratch, Digit digit, unsigned threads)
+  FirstRound(mesh::PageVector<OnCurve>& items, mesh::PageVector<OnCurve>& scratch, Digit digit,
+             unsigned threads)
       : items_(items), scratch_(scratch), digit_(digit), threads_(threads), next_(threads) {}
 
   void run() {
@@ -109,7 +113,8 @@ class FirstRound {
   }
 
   void scatter(unsigned thread) {
-    for (std::size_t i = begin(thread); i < begin(thread + 1); ++i) scratch_[next_[thread][digit_.of(items_[i])]++] = items_[i];
+    for (std::size_t i = begin(thread); i < begin(thread + 1); ++i)
+      scratch_[next_[thread][digit_.of(items_[i])]++] = items_[i];
   }
 
   /// Sorts the buckets that begin in this thread's part.
@@ -135,7 +140,8 @@ HilbertCurve curve_through(std::span<const Point> points, unsigned threads) {
   std::vector<Extent> extents(threads, {points[0], points[0]});
   on_threads(threads, [&](unsigned thread) {
     auto [low, high] = extents[thread];
-    for (std::size_t i = part_begin(points.size(), thread, threads); i < part_begin(points.size(), thread + 1, threads); ++i) {
+    for (std::size_t i = part_begin(points.size(), thread, threads);
+         i < part_begin(points.size(), thread + 1, threads); ++i) {
       low = {std::min(low.x, points[i].x), std::min(low.y, points[i].y)};
       high = {std::max(high.x, points[i].x), std::max(high.y, points[i].y)};
     }
@@ -149,10 +155,12 @@ HilbertCurve curve_through(std::span<const Point> points, unsigned threads) {
   return {low, high};
 }
 
-mesh::PageVector<OnCurve> sorted_by_key(std::span<const Point> points, const HilbertCurve& curve, int shift, unsigned threads) {
+mesh::PageVector<OnCurve> sorted_by_key(std::span<const Point> points, const HilbertCurve& curve, int shift,
+                                        unsigned threads) {
   mesh::PageVector<OnCurve> items(points.size()), scratch(points.size());
   on_threads(threads, [&](unsigned thread) {
-    for (std::size_t i = part_begin(points.size(), thread, threads); i < part_begin(points.size(), thread + 1, threads); ++i) {
+    for (std::size_t i = part_begin(points.size(), thread, threads);
+         i < part_begin(points.size(), thread + 1, threads); ++i) {
       items[i] = {static_cast<std::uint32_t>(curve.index(points[i]) >> shift), static_cast<std::uint32_t>(i)};
     }
   });

@@ -16,12 +16,15 @@ using mesh::VertexSlot;
 namespace {
 
 Location location_of(const Stop& stop) {
-  if (stop.kind == Stop::Kind::kOutside) return {Location::Kind::kOutsideHull, stop.triangle, stop.apex, VertexSlot(kNone)};
+  if (stop.kind == Stop::Kind::kOutside)
+    return {Location::Kind::kOutsideHull, stop.triangle, stop.apex, VertexSlot(kNone)};
   if (stop.cb != 0 && stop.ba != 0 && stop.ac != 0) {
     return {Location::Kind::kInTriangle, stop.triangle, -1, VertexSlot(kNone)};
   }
   if (VertexSlot v; at_vertex(stop, v)) {
-    const int index = v == stop.c.vertex ? stop.apex : v == stop.b.vertex ? next3(stop.apex) : prev3(stop.apex);
+    const int index = v == stop.c.vertex   ? stop.apex
+                      : v == stop.b.vertex ? next3(stop.apex)
+                                           : prev3(stop.apex);
     return {Location::Kind::kOnVertex, stop.triangle, index, v};
   }
   const int opposite = stop.ba == 0 ? stop.apex : stop.cb == 0 ? prev3(stop.apex) : next3(stop.apex);
@@ -38,8 +41,10 @@ Location Triangulation::locate(Point p, std::uint64_t* steps) const {
     return where;
   }
   const auto line = mesh().line();
-  const auto at = std::lower_bound(line.begin(), line.end(), p, [this](VertexSlot v, Point q) { return mesh().point(v) < q; });
-  if (at != line.end() && mesh().point(*at) == p) return {Location::Kind::kOnVertex, TriangleSlot(kNone), -1, *at};
+  const auto at = std::lower_bound(line.begin(), line.end(), p,
+                                   [this](VertexSlot v, Point q) { return mesh().point(v) < q; });
+  if (at != line.end() && mesh().point(*at) == p)
+    return {Location::Kind::kOnVertex, TriangleSlot(kNone), -1, *at};
   return {};
 }
 
@@ -47,13 +52,17 @@ Location Triangulation::locate_from(Point p, TriangleSlot hint) const {
   return location_of(walk(mesh(), p, finite_start(mesh(), hint), Everywhere{}));
 }
 
-/// Many walks abreast: each step of the way is taken for all of a group before the next, so that what it asks of memory has
-/// arrived when its turn comes. (A walk that kept its own state of progress would be as quick to wait, but each look at that
-/// state is a branch that nobody can foresee.)
+/// Many walks abreast: each step of the way is taken for all of a group before the next, so that what it asks
+/// of memory has arrived when its turn comes. (A walk that kept its own state of progress would be as quick
+/// to wait, but each look at that state is a branch that nobody can foresee.)
 class ManyWalks {
  public:
-  ManyWalks(const Triangulation& triangulation, std::span<const Point> points, std::vector<Location>& locations)
-      : triangulation_(triangulation), grid_(triangulation.grid_), mesh_(triangulation.mesh()), points_(points),
+  ManyWalks(const Triangulation& triangulation, std::span<const Point> points,
+            std::vector<Location>& locations)
+      : triangulation_(triangulation),
+        grid_(triangulation.grid_),
+        mesh_(triangulation.mesh()),
+        points_(points),
         locations_(locations) {
     if (points.size() >= kWorthSorting) order_ = hilbert_sorted(points);
   }

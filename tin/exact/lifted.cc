@@ -24,8 +24,9 @@ std::int64_t key(const Lifted& q) { return q.x * (std::int64_t{1} << 31) + q.y; 
 
 }  // namespace
 
-/// The largest of four points on a circle decides, since no three of them are collinear; if its coefficient is zero, all four
-/// are. Grids ask this at every other test and its answers follow no pattern, hence no branches.
+/// The largest of four points on a circle decides, since no three of them are collinear; if its coefficient
+/// is zero, all four are. Grids ask this at every other test and its answers follow no pattern, hence no
+/// branches.
 int tie_sign(const Lifted& a, const Lifted& b, const Lifted& c, const Lifted& d) {
   const std::int64_t of_a = key(a), of_b = key(b), of_c = key(c), of_d = key(d);
   const bool a_or_b = std::max(of_a, of_b) > std::max(of_c, of_d);

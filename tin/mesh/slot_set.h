@@ -1,5 +1,6 @@
-// The free slots of an array, as bits in a tree of 64-bit words: taking the one nearest to a wanted place keeps what is near
-// on the ground near in memory through any history of edits, at an eighth of a byte per slot.
+// The free slots of an array, as bits in a tree of 64-bit words: taking the one nearest to a wanted place
+// keeps what is near on the ground near in memory through any history of edits, at an eighth of a byte per
+// slot.
 #pragma once
 
 #include <cstddef>

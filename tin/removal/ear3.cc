@@ -18,7 +18,8 @@ class Few {
     put(Ear{0, 1, 2}, Ear{0, 2, 3});
   }
 
-  /// e is put into the triangulation of the other four: it sees the triangle on da, and perhaps the other one.
+  /// e is put into the triangulation of the other four: it sees the triangle on da, and perhaps the other
+  /// one.
   void pentagon(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d, std::uint32_t e) {
     if (holds(a, b, c, d)) {
       if (!holds(a, b, d, e)) return put(Ear{b, c, d}, Ear{a, b, d}, Ear{a, d, e});

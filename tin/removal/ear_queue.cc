@@ -21,7 +21,8 @@ void EarQueue::run(const Star& star, std::uint32_t stop, Tally& tally) {
     cut(ring_[some_node_].next);
     return;
   }
-  for (std::uint32_t i = 0, node = some_node_; i < left_; ++i, node = ring_[node].next) remains_.push_back(node);
+  for (std::uint32_t i = 0, node = some_node_; i < left_; ++i, node = ring_[node].next)
+    remains_.push_back(node);
 }
 
 void EarQueue::begin(const Star& star) {
@@ -54,7 +55,8 @@ void EarQueue::shell(const Star& star, std::uint32_t stop, Tally& tally) {
   }
 }
 
-/// Makes the present ear at `node`, if its corners are finite and turn left. `same_start`: only its third corner changed.
+/// Makes the present ear at `node`, if its corners are finite and turn left. `same_start`: only its third
+/// corner changed.
 template <class Tally>
 void EarQueue::renew(const Star& star, std::uint32_t node, bool same_start, Tally& tally) {
   const auto [previous, next, in_heap] = ring_[node];
@@ -136,8 +138,8 @@ void EarQueue::drop(const Star& star, std::uint32_t node, Tally& tally) {
   if (last.node != node) sift(star, i, last, tally);
 }
 
-/// Moves the hole to where `entry` belongs: up, or else down along the smaller children to a leaf and from there up again,
-/// which asks about half as often as comparing with `entry` on the way down.
+/// Moves the hole to where `entry` belongs: up, or else down along the smaller children to a leaf and from
+/// there up again, which asks about half as often as comparing with `entry` on the way down.
 template <class Tally>
 void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tally& tally) {
   if (!use_heap_) return put(hole, entry);
@@ -155,8 +157,10 @@ void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tall
 
 /// Moves the hole up, not above `top`, while its parent comes after `entry`.
 template <class Tally>
-std::size_t EarQueue::climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally) {
-  for (std::size_t parent; hole > top && comes_before(star, entry, heap_[parent = (hole - 1) / kArity], tally); hole = parent) {
+std::size_t EarQueue::climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry,
+                            Tally& tally) {
+  for (std::size_t parent;
+       hole > top && comes_before(star, entry, heap_[parent = (hole - 1) / kArity], tally); hole = parent) {
     put(hole, heap_[parent]);
   }
   return hole;

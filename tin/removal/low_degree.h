@@ -1,8 +1,10 @@
-// Small holes (after Devillers, "Vertex removal in two dimensional Delaunay triangulation: speed-up by low degrees
-// optimization", CGTA 2011). Almost every vertex of a random triangulation has a low degree (97 % are below nine).
+// Small holes (after Devillers, "Vertex removal in two dimensional Delaunay triangulation: speed-up by low
+// degrees optimization", CGTA 2011). Almost every vertex of a random triangulation has a low degree (97 % are
+// below nine).
 //
-// What a test finds is as good as random, and a branch on it is mispredicted every other time, which costs more than a test.
-// So little here branches: the corner over an edge is found by a tournament, and a pentagon is one of five fans, looked up.
+// What a test finds is as good as random, and a branch on it is mispredicted every other time, which costs
+// more than a test. So little here branches: the corner over an edge is found by a tournament, and a pentagon
+// is one of five fans, looked up.
 #pragma once
 
 #include <array>
@@ -13,8 +15,9 @@
 
 namespace tin::removal {
 
-/// Fills stars, and chains of link positions with their closing edge, by edge completion (Devillers 2002, section 4.1.2) down
-/// to pentagons. In-circle tests: none, 1, 3, 3 to 6, 5 to 10 for three to seven corners; (k - 2) (k - 3) / 2 at most.
+/// Fills stars, and chains of link positions with their closing edge, by edge completion (Devillers 2002,
+/// section 4.1.2) down to pentagons. In-circle tests: none, 1, 3, 3 to 6, 5 to 10 for three to seven corners;
+/// (k - 2) (k - 3) / 2 at most.
 template <class Tally>
 class LowDegree {
  public:
@@ -52,7 +55,8 @@ class LowDegree {
     triangle(a, a + 2 - turned, a + 3);
   }
 
-  /// The last corner is put into the triangulation of the other four: it sees the triangle on its side, and perhaps the other one.
+  /// The last corner is put into the triangulation of the other four: it sees the triangle on its side, and
+  /// perhaps the other one.
   void pentagon(std::uint32_t a) {
     const std::uint32_t turned = holds(a, a + 1, a + 2, a + 3) ? 1 : 0;
     const std::uint32_t near = holds(a, a + 2 - turned, a + 3, a + 4) ? 1 : 0;
@@ -90,8 +94,8 @@ class LowDegree {
     triangle(a, apex, g);
   }
 
-  /// Of the corners from `begin` to before `end` the one that makes a Delaunay triangle with the edge from `last` to `first`,
-  /// if one of them does.
+  /// Of the corners from `begin` to before `end` the one that makes a Delaunay triangle with the edge from
+  /// `last` to `first`, if one of them does.
   std::uint32_t tournament(std::uint32_t first, std::uint32_t last, std::uint32_t begin, std::uint32_t end) {
     std::uint32_t apex = begin;
     for (std::uint32_t i = begin + 1; i < end; ++i) apex = better(first, last, apex, i);

@@ -1,5 +1,6 @@
-// `production`: what won the benchmark at each degree (tests/bench/README.md): edge completion that branches little while its
-// square is small, and randomised refilling above, so that no degree is worse than expected linear.
+// `production`: what won the benchmark at each degree (tests/bench/README.md): edge completion that branches
+// little while its square is small, and randomised refilling above, so that no degree is worse than expected
+// linear.
 #pragma once
 
 #include <array>

@@ -34,8 +34,8 @@ void Star::gather(const Mesh& mesh, VertexSlot v) {
   }
 }
 
-/// Finds the link's edges in both directions at a time: each step waits for memory, but the two do not wait for each other.
-/// What will be asked of the neighbourhood next, or written there, is fetched meanwhile.
+/// Finds the link's edges in both directions at a time: each step waits for memory, but the two do not wait
+/// for each other. What will be asked of the neighbourhood next, or written there, is fetched meanwhile.
 void Star::walk_around(const Mesh& mesh, VertexSlot v) {
   const auto fetch = [&mesh](HalfEdge e) {
     mesh.prefetch(mesh.origin(e));
@@ -79,14 +79,16 @@ bool Star::leaves_a_line() const {
   return true;
 }
 
-/// The infinite vertex lies straight up: with it in the determinant only the turn of the other three is left. A collinear
-/// three a, b, c, in the order of the link behind the infinite vertex, have b between a and c, and b stays on the hull:
-/// the line gives way outwards, as if it turned right. (Moving the infinite vertex a little beyond infinity, seen from
-/// the removed one, does this for all lines at once.)
+/// The infinite vertex lies straight up: with it in the determinant only the turn of the other three is left.
+/// A collinear three a, b, c, in the order of the link behind the infinite vertex, have b between a and c,
+/// and b stays on the hull: the line gives way outwards, as if it turned right. (Moving the infinite vertex a
+/// little beyond infinity, seen from the removed one, does this for all lines at once.)
 int Star::hull_sign(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   const std::int64_t turn = exact::orientation(at_[a], at_[b], at_[c]);
   if (turn != 0) return turn > 0 ? 1 : -1;
-  const auto rank = [this](std::uint32_t i) { return i > infinite_ ? i - infinite_ : i + degree() - infinite_; };
+  const auto rank = [this](std::uint32_t i) {
+    return i > infinite_ ? i - infinite_ : i + degree() - infinite_;
+  };
   const bool ascending = (rank(a) < rank(b)) == ((rank(b) < rank(c)) == (rank(a) < rank(c)));
   return ascending ? -1 : 1;
 }
@@ -110,8 +112,9 @@ void Star::refill(Mesh& mesh, std::span<const Ear> ears, std::vector<TriangleSlo
     const auto [previous, middle, next] = ears[i];
     const TriangleSlot t = link_[i].triangle();  // k - 2 of the star's k slots are used again
     const HalfEdge open(t, 1);
-    mesh.write_triangle(t, {{vertices_[previous], vertices_[middle], vertices_[next]},
-                            {sew(HalfEdge(t, 0), outside_[middle]), HalfEdge(), sew(HalfEdge(t, 2), outside_[previous])}});
+    mesh.write_triangle(
+        t, {{vertices_[previous], vertices_[middle], vertices_[next]},
+            {sew(HalfEdge(t, 0), outside_[middle]), HalfEdge(), sew(HalfEdge(t, 2), outside_[previous])}});
     mesh.set_triangle_at(vertices_[middle], t);
     outside_[previous] = open;
     fresh[i] = t;

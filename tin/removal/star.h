@@ -1,4 +1,5 @@
-// The star of a vertex that is to go: its link as all deletion methods see it, and the sewing of what they answer.
+// The star of a vertex that is to go: its link as all deletion methods see it, and the sewing of what they
+// answer.
 //
 //   Star star;
 //   star.gather(mesh, v);
@@ -15,8 +16,9 @@
 
 namespace tin::removal {
 
-/// A triangle that fills the hole: three positions in the link, in the link's order. Ears come in an order in which each
-/// cuts its `middle` off the polygon that is left; in the last one all three corners are what is left.
+/// A triangle that fills the hole: three positions in the link, in the link's order. Ears come in an order in
+/// which each cuts its `middle` off the polygon that is left; in the last one all three corners are what is
+/// left.
 struct Ear {
   std::uint32_t previous, middle, next;
 };
@@ -43,8 +45,9 @@ class Star {
   /// Whether all other vertices of the mesh are collinear, so that no triangle would be left.
   bool leaves_a_line() const;
 
-  /// Whether the perturbed circle of i, j, k holds l. Positions i, j, k in cyclic order, any turn: what is decided is the
-  /// side of l's lift, so triangulations of the link that are not planar do no harm. Requires: distinct positions.
+  /// Whether the perturbed circle of i, j, k holds l. Positions i, j, k in cyclic order, any turn: what is
+  /// decided is the side of l's lift, so triangulations of the link that are not planar do no harm. Requires:
+  /// distinct positions.
   template <class Tally>
   bool in_conflict(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l, Tally& tally) const {
     tally.in_circle_test();
@@ -52,8 +55,8 @@ class Star {
     return exact::lifted_sign(at_[i], at_[j], at_[k], at_[l]) > 0;
   }
 
-  /// Replaces the star by the ears; `fresh` becomes the list of new triangles, and the vertex is released. The ears are
-  /// k - 2 in number and fill the hole. Requires: the mesh is as it was in gather().
+  /// Replaces the star by the ears; `fresh` becomes the list of new triangles, and the vertex is released.
+  /// The ears are k - 2 in number and fill the hole. Requires: the mesh is as it was in gather().
   void refill(mesh::Mesh& mesh, std::span<const Ear> ears, std::vector<mesh::TriangleSlot>& fresh);
 
  private:
@@ -67,7 +70,8 @@ class Star {
   std::uint32_t infinite_ = kNowhere;
   std::uint32_t degree_ = 0;
 
-  // Of these the first degree_ are in use: they are larger than any link so far, since resizing them each time costs.
+  // Of these the first degree_ are in use: they are larger than any link so far, since resizing them each
+  // time costs.
   std::vector<mesh::HalfEdge> link_;
   std::vector<mesh::HalfEdge> clockwise_;  // while walking: the part found in the other direction
   std::vector<mesh::HalfEdge> outside_;  // the other sides of the link's edges
