@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -86,7 +87,10 @@ struct SetZOp {
   VertexId id;
   double z = 0;
 };
-using EditOp = std::variant<InsertOp, RemoveOp, MoveOp, SetZOp>;
+struct RemoveWithinOp {
+  std::vector<Position2> polygon;  // at least three
+};
+using EditOp = std::variant<InsertOp, RemoveOp, MoveOp, SetZOp, RemoveWithinOp>;
 
 /// POST /tins/{tin}/edits. ops[i] stands at "/ops/i" in the body.
 struct EditRequest {
@@ -94,7 +98,12 @@ struct EditRequest {
   std::optional<std::string> crs;
   Remark remark;
 };
-tin::base::Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops);
+struct EditLimits {
+  std::size_t ops = 0;
+  std::size_t areas = 0;              // operations that concern an area
+  std::size_t polygon_positions = 0;  // of each of these
+};
+tin::base::Result<EditRequest> read_edit_request(std::string_view body, const EditLimits& limits);
 
 /// POST /tins/{tin}/elevation.
 struct ElevationRequest {
@@ -146,8 +155,13 @@ struct TinList {
 };
 std::string tin_list_json(const TinList& list);
 
-/// One id per op: of the vertex inserted or found, removed, moved or set.
-std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids);
+/// An operation that concerned an area, by its index, and how many vertices that were.
+using AreaResult = std::pair<std::size_t, std::size_t>;
+
+/// One id per op, of the vertex inserted or found, removed, moved or set; of an op in `areas` (ascending) as
+/// many as it removed.
+std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids,
+                             std::span<const AreaResult> areas = {});
 
 struct ElevationAnswer {
   std::optional<double> z;                          // null outside the hull and in voids
@@ -168,6 +182,14 @@ std::string conformance_json(std::span<const std::string> classes);
 std::string health_json(std::string_view status, std::string_view version);
 
 /// One OGC feature collection of a TIN.
+/// A way to query a collection as OGC API EDR knows them: "position", "items" ...
+struct DataQuery {
+  std::string type;
+  std::string href;
+  std::string title;
+  std::vector<std::string> formats;  // the first is the default
+};
+
 struct CollectionDocument {
   std::string id;
   std::string title;
@@ -177,12 +199,17 @@ struct CollectionDocument {
   std::string storage_crs;                    // URI; left out when empty
   bool features = true;                       // has items; else it is a coverage
   std::vector<Link> links;
+  std::vector<DataQuery> queries;
+  std::vector<std::string> formats;  // of all queries
+  std::string vertical_unit;         // of elevations; empty: not known
 };
 std::string collection_json(const CollectionDocument& collection);
 std::string collections_json(std::span<const CollectionDocument> collections, std::span<const Link> links);
 
 enum class JobState { kAccepted, kRunning, kSuccessful, kFailed, kDismissed };
 std::string_view job_state_name(JobState state);
+/// Nothing for other names.
+std::optional<JobState> job_state(std::string_view name);
 
 /// Times are RFC 3339 texts in UTC; those that are empty are left out, as is an empty message.
 struct JobStatus {

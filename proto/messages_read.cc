@@ -159,7 +159,32 @@ Result<void> read_create_placing(const Object& object, CreateTin& create) {
   return {};
 }
 
-Result<EditOp> read_op_named(std::string_view op, Value op_name, Value value) {
+Result<std::vector<Position2>> read_positions(Value value, std::size_t most) {
+  auto array = value.array(most);
+  if (!array) return std::move(array).error();
+  std::vector<Position2> positions;
+  positions.reserve(array->size());
+  for (const Value item : *array) {
+    auto numbers = read_numbers<2>(item);
+    if (!numbers) return std::move(numbers).error();
+    positions.push_back({(*numbers)[0], (*numbers)[1]});
+  }
+  return positions;
+}
+
+Result<EditOp> read_remove_within(Value value, std::size_t most_positions) {
+  auto object = value.object({"op", "polygon"});
+  if (!object) return std::move(object).error();
+  auto member = object->require("polygon");
+  if (!member) return std::move(member).error();
+  auto polygon = read_positions(*member, most_positions);
+  if (!polygon) return std::move(polygon).error();
+  if (polygon->size() < 3)
+    return member->error(Code::kInvalidValue, "a polygon has at least three positions");
+  return EditOp(RemoveWithinOp{std::move(*polygon)});
+}
+
+Result<EditOp> read_op_named(std::string_view op, Value op_name, Value value, const EditLimits& limits) {
   const auto read = [&](std::initializer_list<std::string_view> names, auto make) -> Result<EditOp> {
     auto object = value.object(names);
     if (!object) return std::move(object).error();
@@ -185,18 +210,20 @@ Result<EditOp> read_op_named(std::string_view op, Value op_name, Value value) {
   if (op == "set-z") {
     return read({"op", "id", "z"}, [](Members& m) -> EditOp { return SetZOp{m.id("id"), m.number("z")}; });
   }
-  return op_name.error(Code::kInvalidValue, "there is no op \"" + utf8_prefix(op, 32) +
-                                                "\"; there are insert, remove, move and set-z");
+  if (op == "remove-within") return read_remove_within(value, limits.polygon_positions);
+  return op_name.error(Code::kInvalidValue,
+                       "there is no op \"" + utf8_prefix(op, 32) +
+                           "\"; there are insert, remove, move, set-z and remove-within");
 }
 
-Result<EditOp> read_op(Value value) {
+Result<EditOp> read_op(Value value, const EditLimits& limits) {
   auto object = value.any_object();
   if (!object) return std::move(object).error();
   auto member = object->require("op");
   if (!member) return std::move(member).error();
   auto name = member->string(kMaxWord);
   if (!name) return std::move(name).error();
-  return read_op_named(*name, *member, value);
+  return read_op_named(*name, *member, value, limits);
 }
 
 }  // namespace
@@ -286,7 +313,7 @@ Result<CreateTin> read_create_tin(std::string_view body, std::size_t max_vertice
   return create;
 }
 
-Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops) {
+Result<EditRequest> read_edit_request(std::string_view body, const EditLimits& limits) {
   auto document = Document::parse(body);
   if (!document) return std::move(document).error();
   auto object = document->root().object({"ops", "crs", "author", "note"});
@@ -300,12 +327,17 @@ Result<EditRequest> read_edit_request(std::string_view body, std::size_t max_ops
   request.remark = std::move(*remark);
   auto member = object->require("ops");
   if (!member) return std::move(member).error();
-  auto ops = member->array(max_ops);
+  auto ops = member->array(limits.ops);
   if (!ops) return std::move(ops).error();
   request.ops.reserve(ops->size());
+  std::size_t areas = 0;
   for (const Value item : *ops) {
-    auto op = read_op(item);
+    auto op = read_op(item, limits);
     if (!op) return std::move(op).error();
+    if (std::holds_alternative<RemoveWithinOp>(*op) && ++areas > limits.areas) {
+      return item.error(Code::kTooLarge, "a request may have at most " + std::to_string(limits.areas) +
+                                             " operations that concern an area");
+    }
     request.ops.push_back(std::move(*op));
   }
   return request;
@@ -336,14 +368,9 @@ Result<ElevationRequest> read_elevation_request(std::string_view body, std::size
   }
   auto member = object->require("positions");
   if (!member) return std::move(member).error();
-  auto positions = member->array(max_positions);
+  auto positions = read_positions(*member, max_positions);
   if (!positions) return std::move(positions).error();
-  request.positions.reserve(positions->size());
-  for (const Value item : *positions) {
-    auto numbers = read_numbers<2>(item);
-    if (!numbers) return std::move(numbers).error();
-    request.positions.push_back({(*numbers)[0], (*numbers)[1]});
-  }
+  request.positions = std::move(*positions);
   return request;
 }
 

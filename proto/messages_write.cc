@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "proto/edr.h"
 #include "proto/messages.h"
 #include "proto/messages_internal.h"
 
@@ -68,6 +69,42 @@ void write_tin(JsonWriter& json, const TinDocument& tin) {
   json.end_object();
 }
 
+void write_data_query(JsonWriter& json, const DataQuery& query, std::string_view vertical_unit) {
+  json.key(query.type).begin_object().key("link").begin_object();
+  json.key("href").string(query.href);
+  json.key("rel").string("data");
+  json.key("title").string(query.title);
+  json.key("variables").begin_object();
+  json.key("title").string(query.title);
+  json.key("query_type").string(query.type);
+  if (query.type == "cube") {
+    json.key("height_units").begin_array();
+    if (!vertical_unit.empty()) {
+      const auto symbol = ucum_symbol(vertical_unit);
+      json.string(symbol.empty() ? vertical_unit : symbol);
+    }
+    json.end_array();
+  }
+  if (!query.formats.empty()) {
+    json.key("output_formats");
+    write_strings(json, query.formats);
+    json.key("default_output_format").string(query.formats.front());
+  }
+  json.end_object().end_object().end_object();
+}
+
+/// What OGC API EDR wants of a collection.
+void write_queries(JsonWriter& json, const CollectionDocument& collection) {
+  json.key("data_queries").begin_object();
+  for (const DataQuery& query : collection.queries) write_data_query(json, query, collection.vertical_unit);
+  json.end_object();
+  json.key("output_formats");
+  write_strings(json, collection.formats);
+  json.key("parameter_names").begin_object().key("elevation");
+  write_elevation_parameter(json, collection.vertical_unit);
+  json.end_object();
+}
+
 void write_collection(JsonWriter& json, const CollectionDocument& collection) {
   json.begin_object();
   json.key("id").string(collection.id);
@@ -81,10 +118,15 @@ void write_collection(JsonWriter& json, const CollectionDocument& collection) {
     json.key("crs").string("http://www.opengis.net/def/crs/OGC/1.3/CRS84");
     json.end_object().end_object();
   }
-  if (collection.features) json.key("itemType").string("feature");
+  if (collection.features) {
+    json.key("itemType").string("feature");
+  } else {
+    json.key("layerDataType").string("Coverage");  // GDAL's OAPIF driver takes all others for features
+  }
   json.key("crs");
   write_strings(json, collection.crs);
   write_if_any(json, "storageCrs", collection.storage_crs);
+  write_queries(json, collection);
   write_links(json, collection.links);
   json.end_object();
 }
@@ -138,12 +180,27 @@ std::string tin_list_json(const TinList& list) {
   return json.take();
 }
 
-std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids) {
+std::string edit_result_json(std::uint64_t revision, std::span<const VertexId> ids,
+                             std::span<const AreaResult> areas) {
   JsonWriter json;
   json.begin_object();
   json.key("revision").integer(revision);
   json.key("results").begin_array();
-  for (const VertexId id : ids) json.begin_object().key("id").integer(id.value()).end_object();
+  for (std::size_t op = 0; !ids.empty() || !areas.empty(); ++op) {
+    json.begin_object();
+    std::size_t taken = 1;
+    if (areas.empty() || areas.front().first != op) {
+      json.key("id").integer(ids.front().value());
+    } else {
+      taken = areas.front().second;
+      areas = areas.subspan(1);
+      json.key("removed").begin_array();
+      for (const VertexId id : ids.first(taken)) json.integer(id.value());
+      json.end_array();
+    }
+    ids = ids.subspan(taken);
+    json.end_object();
+  }
   json.end_array().end_object();
   return json.take();
 }
@@ -231,6 +288,14 @@ std::string_view job_state_name(JobState state) {
       return "dismissed";
   }
   return "failed";
+}
+
+std::optional<JobState> job_state(std::string_view name) {
+  for (const JobState state : {JobState::kAccepted, JobState::kRunning, JobState::kSuccessful,
+                               JobState::kFailed, JobState::kDismissed}) {
+    if (job_state_name(state) == name) return state;
+  }
+  return std::nullopt;
 }
 
 std::string job_json(const JobStatus& job) {

@@ -27,6 +27,7 @@ std::string layer_json(const LayerDocument& layer) {
   write_bounds(json, layer.bounds);
   json.key("minzoom").integer(0);
   json.key("maxzoom").integer(layer.available.size() - 1);
+  json.key("metadataAvailability").integer(kMetadataLevels);
   json.key("available").begin_array();
   for (const auto& [x0, y0, x1, y1] : layer.available) {
     json.begin_array().begin_object();

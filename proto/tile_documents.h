@@ -9,6 +9,10 @@
 
 namespace proto {
 
+/// Tiles of the levels 0, 10, 20 ... say in their metadata which tiles of the next ten levels lie below them. Cesium goes by that
+/// instead of the list in layer.json, and expects it of all that bear metadata.
+inline constexpr int kMetadataLevels = 10;
+
 struct LayerDocument {
   std::string name;
   std::uint64_t revision = 0;

@@ -34,12 +34,14 @@ using Numbers = std::map<std::string, Number>;  // by JSON pointer
 Numbers numbers_of(LimitConfig& limits) {
   return {{"/limits/body_bytes_memory", {&limits.body_bytes_memory, 1024, 4 * kGiB}},
           {"/limits/upload_bytes", {&limits.upload_bytes, 1024, 1024 * kGiB}},
+          {"/limits/unpacked_bytes", {&limits.unpacked_bytes, 1, 1024 * kGiB}},
           {"/limits/raster_pixels", {&limits.raster_pixels, 1, kGiB}},
           {"/limits/export_pixels", {&limits.export_pixels, 1, 16 * kGiB}},
           {"/limits/memory_bytes", {&limits.memory_bytes, 0, 1024 * 1024 * kGiB}},
           {"/limits/vertices_per_tin", {&limits.vertices_per_tin, 1, 500 * kMillion}},
           {"/limits/tins", {&limits.tins, 1, kMillion}},
           {"/limits/edits_per_request", {&limits.edits_per_request, 1, 10 * kMillion}},
+          {"/limits/areas_per_request", {&limits.areas_per_request, 0, kMillion}},
           {"/limits/positions_per_request", {&limits.positions_per_request, 1, 100 * kMillion}},
           {"/limits/polygon_positions", {&limits.polygon_positions, 3, kMillion}},
           {"/limits/contour_levels", {&limits.contour_levels, 1, kMillion}},
@@ -85,6 +87,7 @@ Numbers numbers_of(HttpConfig& http) {
           {"/http/header_fields", {&http.header_fields, 8, 10'000}},
           {"/http/target_bytes", {&http.target_bytes, 256, kMillion}},
           {"/http/header_seconds", {&http.header_seconds, 1, 3600}},
+          {"/http/buffered_bytes", {&http.buffered_bytes, 1024, 1024 * kGiB}},
           {"/http/body_bytes_per_second", {&http.body_bytes_per_second, 1, kGiB}},
           {"/http/stall_seconds", {&http.stall_seconds, 1, 3600}},
           {"/http/compress_from_bytes", {&http.compress_from_bytes, 0, kGiB}},
@@ -248,6 +251,10 @@ Result<Config> config_of(const json& document) {
   if (config.limits.page_size > config.limits.page_size_max) {
     return invalid("/limits/page_size",
                    "at most page_size_max, which is " + std::to_string(config.limits.page_size_max));
+  }
+  if (config.http.buffered_bytes < config.limits.body_bytes_memory) {
+    return invalid("/http/buffered_bytes", "at least limits.body_bytes_memory, which is " +
+                                               std::to_string(config.limits.body_bytes_memory));
   }
   return config;
 }

@@ -26,12 +26,14 @@ struct Listen {
 struct LimitConfig {
   std::int64_t body_bytes_memory = 32 << 20;          // of a body that is read into memory
   std::int64_t upload_bytes = std::int64_t{2} << 30;  // of a body that goes to a file
+  std::int64_t unpacked_bytes = std::int64_t{8} << 30;  // of what is read from an uploaded ZIP archive
   std::int64_t raster_pixels = 200'000'000;           // of an uploaded raster
   std::int64_t export_pixels = 400'000'000;           // of a raster that is made
   std::int64_t memory_bytes = 0;  // that terrains, versions and jobs take, estimated; 0: 3/4 of the machine
   std::int64_t vertices_per_tin = 50'000'000;
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;
+  std::int64_t areas_per_request = 16;  // edits of an area; each looks at all vertices
   std::int64_t positions_per_request = 1'000'000;
   std::int64_t polygon_positions = 5000;       // of a polygon that is asked about
   std::int64_t contour_levels = 10'000;        // per request
@@ -86,6 +88,8 @@ struct HttpConfig {
   std::int64_t header_fields = 100;
   std::int64_t target_bytes = 8 * 1024;
   std::int64_t header_seconds = 10;
+  std::int64_t buffered_bytes =
+      256 << 20;  // of bodies in memory and of answers that wait for clients, in all
   std::int64_t body_bytes_per_second = 1024;  // the least, either way
   std::int64_t stall_seconds = 60;            // without any progress of a body
   std::int64_t compress_from_bytes = 1024;    // of an answer in text, for clients that accept it; 0: never

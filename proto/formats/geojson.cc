@@ -127,6 +127,48 @@ void GeoJsonWriter::contour(double z, bool closed, std::span<const Position2> at
   out_ += closed ? R"(,"closed":true}})" : R"(,"closed":false}})";
 }
 
+void GeoJsonWriter::sample(Position2 at, std::optional<double> z) {
+  separate();
+  out_ += R"({"type":"Feature","geometry":{"type":"Point","coordinates":)";
+  if (z) {
+    append_position({at.x, at.y, *z});
+  } else {
+    out_ += '[';
+    append_place(at);
+    out_ += ']';
+  }
+  out_ += R"(},"properties":{"elevation":)";
+  z ? append_shortest(out_, *z) : void(out_ += "null");
+  out_ += "}}";
+}
+
+void GeoJsonWriter::stretch(std::span<const Position2> at, std::span<const double> z,
+                            std::span<const double> elevation, std::span<const double> distance) {
+  separate();
+  const bool line = at.size() > 1;
+  out_ += R"({"type":"Feature","geometry":{"type":")";
+  out_ += line ? R"(LineString","coordinates":[)" : R"(Point","coordinates":)";
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) out_ += ',';
+    append_position({at[i].x, at[i].y, z[i]});
+  }
+  if (line) out_ += ']';
+  JsonWriter properties;
+  properties.begin_object();
+  const auto write = [&properties](std::string_view name, std::span<const double> values) {
+    if (values.empty()) return;
+    properties.key(name).begin_array();
+    for (const double value : values) properties.number(value);
+    properties.end_array();
+  };
+  write("elevation", elevation);
+  write("distance", distance);
+  properties.end_object();
+  out_ += R"(},"properties":)";
+  out_ += properties.take();
+  out_ += '}';
+}
+
 void GeoJsonWriter::end() {
   out_ += "\n]}\n";
 }
@@ -136,18 +178,22 @@ void GeoJsonWriter::separate() {
   first_ = false;
 }
 
-void GeoJsonWriter::append_position(const Position& at) {
-  out_ += '[';
+void GeoJsonWriter::append_place(Position2 at) {
   if (coordinates_ == Coordinates::kExact) {
     append_shortest(out_, at.x);
     out_ += ',';
     append_shortest(out_, at.y);
-  } else {
-    const int decimals = coordinates_ == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals;
-    append_rounded(out_, at.x, decimals);
-    out_ += ',';
-    append_rounded(out_, at.y, decimals);
+    return;
   }
+  const int decimals = coordinates_ == Coordinates::kDegrees ? kDegreeDecimals : kProjectedDecimals;
+  append_rounded(out_, at.x, decimals);
+  out_ += ',';
+  append_rounded(out_, at.y, decimals);
+}
+
+void GeoJsonWriter::append_position(const Position& at) {
+  out_ += '[';
+  append_place({at.x, at.y});
   out_ += ',';
   append_shortest(out_, at.z);
   out_ += ']';

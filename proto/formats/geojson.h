@@ -52,11 +52,18 @@ class GeoJsonWriter {
   void edge(const std::array<VertexId, 2>& ids, const std::array<Position, 2>& ends, bool hull);
   /// A LineString of `z` with the properties "elevation" and "closed". Requires: two positions or more, finite.
   void contour(double z, bool closed, std::span<const Position2> at);
+  /// A Point with the property "elevation", which is null where there is none.
+  void sample(Position2 at, std::optional<double> z);
+  /// A stretch of surface along a line: a LineString (a Point when it is one position) with arrays as the properties
+  /// "elevation" and "distance", each left out when empty. Requires: as many of each as positions, `z` finite.
+  void stretch(std::span<const Position2> at, std::span<const double> z, std::span<const double> elevation,
+               std::span<const double> distance);
   void end();
 
  private:
   void separate();
   void append_position(const Position& at);
+  void append_place(Position2 at);
 
   std::string& out_;
   Coordinates coordinates_;

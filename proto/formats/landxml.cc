@@ -4,6 +4,7 @@
 
 #include "proto/formats/frame_note.h"
 #include "proto/formats/text_internal.h"
+#include "proto/markup.h"
 #include "proto/numbers.h"
 #include "proto/utf8.h"
 
@@ -21,26 +22,7 @@ bool is(double unit, double wanted) {
 }
 
 std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : one_line(text)) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
+  return escaped_markup(one_line(text));
 }
 
 /// Units of length by LandXML's names, in its two systems.

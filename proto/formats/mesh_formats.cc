@@ -25,7 +25,7 @@ constexpr std::array kFormats{
     MeshFormatEntry{"ply-ascii", "PLY, text", ".ply", "application/ply",
                     make<PlyFormat, PlyEncoding::kAscii>},
     MeshFormatEntry{"2dm", "SMS 2DM mesh", ".2dm", "text/plain; charset=utf-8", make<Sms2dmFormat>},
-    MeshFormatEntry{"landxml", "LandXML surface", ".xml", "application/xml", make<LandXmlFormat>},
+    MeshFormatEntry{"landxml", "LandXML surface", ".xml", "application/xml", make<LandXmlFormat>, false},
     MeshFormatEntry{"glb", "glTF, binary", ".glb", "model/gltf-binary", make<GlbFormat>},
     MeshFormatEntry{"cityjson", "CityJSON TINRelief", ".city.json", "application/city+json",
                     make<CityJsonFormat>},

@@ -15,6 +15,7 @@ struct MeshFormatEntry {
   std::string_view suffix;  // ".obj"
   std::string_view media_type;
   std::unique_ptr<MeshFormat> (*make)();
+  bool degrees = true;  // whether it can hold longitudes and latitudes
 };
 
 std::span<const MeshFormatEntry> mesh_formats();

@@ -22,6 +22,7 @@ inline constexpr std::uint16_t kQuantizedMax = 32767;
 /// In degrees.
 struct TileRectangle {
   double west = 0, south = 0, east = 0, north = 0;
+  friend bool operator==(const TileRectangle&, const TileRectangle&) = default;
 };
 
 struct QuantizedVertex {

@@ -117,7 +117,10 @@ Result<std::optional<app::RequestKey>> request_key(const Request& request) {
   }
   // Two hashes and the length: nobody gains by a collision, which would take the client's own key.
   std::string request_print;
-  append_number(request_print, hash(std::string(request.path).append(1, '\n').append(request.body)));
+  std::string asked = std::string(request.path).append(1, '\n').append(request.body);
+  if (request.method != http::Method::kPost) asked.append(1, '\n').append(http::method_name(request.method));
+  asked.append(request.header("content-crs"));
+  append_number(request_print, hash(asked));
   append_number(request_print, tin::codec::crc32c(request.body));
   append_number(request_print, request.body.size());
   return std::optional(app::RequestKey{std::string(key), std::move(request_print)});

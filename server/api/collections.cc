@@ -5,6 +5,7 @@
 
 #include "proto/collection_schema.h"
 #include "proto/crs_uri.h"
+#include "proto/edr.h"
 #include "server/api/coverage.h"
 #include "server/api/feature_query.h"
 #include "server/api/links.h"
@@ -62,9 +63,13 @@ proto::CollectionDocument collection_document(const app::Tin& tin, const app::Su
                     {self, "alternate", "text/html", "As a page"},
                     {self + "/items", "items", std::string(proto::formats::kGeoJsonMediaType), document.title},
                     {self + "/items", "items", "text/html", document.title + " as a page"},
+                    {self + "/items", "data", std::string(proto::formats::kGeoJsonMediaType), document.title},
                     {self + "/schema", "describedby", std::string(proto::kSchemaMediaType), "Properties"},
                     {self + "/schema", "http://www.opengis.net/def/rel/ogc/1.0/schema",
                      std::string(proto::kSchemaMediaType), "Properties"}};
+  document.formats = {std::string(proto::kGeoJsonName)};
+  document.queries = {{"items", self + "/items", document.title, document.formats}};
+  document.vertical_unit = summary.frame.vertical_unit;
   return document;
 }
 
@@ -97,7 +102,7 @@ Result<Response> collections(Context& context, const Request& request) {
   for (const FeatureKind kind : kKinds) documents.push_back(collection_document(**tin, summary, kind));
   if (has_surface(summary)) documents.push_back(surface_document(**tin, summary));
   for (proto::CollectionDocument& document : documents) {
-    make_absolute(document.links, base);
+    make_absolute(document, base);
     page.links.push_back({request.path + "/" + document.id, "item", "", document.title});
   }
   make_absolute(links, base);
@@ -113,7 +118,7 @@ Result<Response> collection(Context& context, const Request& request) {
   if (!kind) return kind.error();
   const app::Summary summary = (*tin)->summary();
   auto document = collection_document(**tin, summary, *kind);
-  make_absolute(document.links, base_url(context.config, request));
+  make_absolute(document, base_url(context.config, request));
   Response response = negotiated(request, proto::collection_json(document), kJson, page_of(document));
   response.headers.emplace_back("ETag", negotiated_tag(**tin, summary.revision, request));
   return response;

@@ -11,6 +11,7 @@
 #include "proto/coverage_documents.h"
 #include "proto/crs_uri.h"
 #include "server/api/collections.h"
+#include "server/api/edr.h"
 #include "server/api/export_grid.h"
 #include "server/api/feature_query.h"
 #include "server/api/links.h"
@@ -218,8 +219,9 @@ Result<http::Body> write_raster(Context& context, const Request& request, const 
   Unfinished file{folder / ("coverage-" + std::to_string(made++) + ".tif")};
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(context.config.limits.export_seconds);
   const auto source = [&](std::int64_t row, std::span<double> values) -> Result<void> {
-    if (request.is_aborted()) return error(Code::kCancelled, "The server is stopping.");
-    if (std::chrono::steady_clock::now() > end) return error(Code::kTooLarge, "Making the raster takes too long: ask for fewer pixels.");
+    if (request.is_aborted()) return error(Code::kCancelled, "Nobody waits for this answer any more.");
+    if (std::chrono::steady_clock::now() > end)
+      return error(Code::kTooLarge, "Making the raster takes too long: ask for fewer pixels.");
     rows.read(row, values);
     return {};
   };
@@ -276,7 +278,7 @@ Result<Response> surface(Context& context, const Request& request) {
   const app::Summary summary = (*tin)->summary();
   if (!has_surface(summary)) return error(Code::kNotFound, "The TIN has no surface with a place on the globe.");
   auto document = surface_document(**tin, summary);
-  make_absolute(document.links, base_url(context.config, request));
+  make_absolute(document, base_url(context.config, request));
   const HtmlPage page{document.title, document.description, document.links, {}, {}, {}};
   Response response = negotiated(request, proto::collection_json(document), kJson, page);
   response.headers.emplace_back("ETag", negotiated_tag(**tin, summary.revision, request));
@@ -304,6 +306,8 @@ proto::CollectionDocument surface_document(const app::Tin& tin, const app::Summa
                     {self + "/coverage", relations + "coverage", std::string(kTiff), "Elevations"},
                     {self + "/coverage/domainset", relations + "coverage-domainset", std::string(kJson), "Where they are"},
                     {self + "/coverage/rangetype", relations + "coverage-rangetype", std::string(kJson), "What they are"}};
+  add_queries(document, self);
+  document.vertical_unit = summary.frame.vertical_unit;
   return document;
 }
 

@@ -1,5 +1,5 @@
 // /tins/{tin}/elevation: one position by GET, many by POST.
-#include "tin/query/elevation.h"
+#include "server/api/elevation.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,6 +13,7 @@
 #include "server/api/positions.h"
 #include "server/api/routes.h"
 #include "server/api/surface_work.h"
+#include "tin/delaunay/hilbert_sort.h"
 
 namespace server::api {
 
@@ -107,51 +108,72 @@ std::optional<Response> one_at_once(const Context& context, const Request& reque
   return one_answer(**tin, request, *answer);
 }
 
-/// How positions between samples get their elevation.
-struct Manner {
-  proto::Voids voids = proto::Voids::kKeep;
-  tin::query::Interpolation by = tin::query::Interpolation::kLinear;
-};
+constexpr std::size_t kAtOnce = 4000;  // positions that are located together
 
-constexpr std::size_t kAtOnce = 4096;  // positions that are located together
-
-/// Fills z[begin..end) from positions in the TIN's CRS. Many walks at a time hide the time that memory takes.
-void look_up_block(const Terrain& terrain, const Manner& manner, std::span<const double> x,
-                   std::span<const double> y, std::span<const std::uint8_t> ok, std::size_t begin,
-                   std::size_t end, std::vector<std::optional<double>>& z) {
-  std::vector<tin::exact::Point> points;
-  std::vector<std::size_t> indices;
-  for (std::size_t i = begin; i < end; ++i) {
-    if (ok[i] == 0) continue;
-    const auto at = terrain.frame().to_lattice(x[i], y[i]);
-    if (!at) continue;  // beyond the lattice: no elevation
-    points.push_back(*at);
-    indices.push_back(i);
-  }
+/// Fills z[indices[k]] with the elevation at points[k]. Many walks at a time hide the time that memory takes.
+void look_up_block(const Terrain& terrain, ElevationQuery& query, std::span<const tin::exact::Point> points,
+                   std::span<const std::uint32_t> indices, std::vector<tin::delaunay::Location>& locations,
+                   std::vector<std::optional<double>>& z) {
   const bool has_triangles = terrain.mesh().dimension() == 2;
-  std::vector<tin::delaunay::Location> locations;
   if (has_triangles) terrain.triangulation().locate_many(points, locations);
-  ElevationQuery query(terrain, engine_voids(manner.voids), manner.by);
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (has_triangles) query.start_from(locations[k].triangle);
     if (const auto found = query.at(points[k])) z[indices[k]] = found->z;
   }
 }
 
-/// Elevations at positions of `crs`; nothing where there is none.
-Result<std::vector<std::optional<double>>> elevations(const Terrain& terrain, std::string_view crs,
-                                                      std::string where, const Manner& manner,
-                                                      std::vector<double> x, std::vector<double> y) {
+/// Elevations at positions in the TIN's CRS, those with `ok`. Many are taken along the Hilbert curve, as the
+/// terrain is stored: each block of them stays in the caches.
+std::vector<std::optional<double>> look_up_all(const Terrain& terrain, const ElevationManner& manner,
+                                               std::span<const double> x, std::span<const double> y,
+                                               std::span<const std::uint8_t> ok) {
+  std::vector<tin::exact::Point> points;
+  std::vector<std::uint32_t> indices;
+  points.reserve(x.size());
+  indices.reserve(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (ok[i] == 0) continue;
+    const auto at = terrain.frame().to_lattice(x[i], y[i]);
+    if (!at) continue;  // beyond the lattice: no elevation
+    points.push_back(*at);
+    indices.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (points.size() > kAtOnce) {
+    std::vector<tin::exact::Point> sorted_points;
+    std::vector<std::uint32_t> sorted_indices;
+    sorted_points.reserve(points.size());
+    sorted_indices.reserve(points.size());
+    for (const auto& one : tin::delaunay::hilbert_sorted(points)) {
+      sorted_points.push_back(points[one.index]);
+      sorted_indices.push_back(indices[one.index]);
+    }
+    points.swap(sorted_points);
+    indices.swap(sorted_indices);
+  }
+  std::vector<std::optional<double>> z(x.size());
+  ElevationQuery query(terrain, engine_voids(manner.voids), manner.by);
+  std::vector<tin::delaunay::Location> locations;
+  for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
+    const std::size_t size = std::min(kAtOnce, points.size() - begin);
+    look_up_block(terrain, query, std::span(points).subspan(begin, size),
+                  std::span(indices).subspan(begin, size), locations, z);
+  }
+  return z;
+}
+
+}  // namespace
+
+Result<std::vector<std::optional<double>>> elevations_at(const Terrain& terrain, std::string_view crs,
+                                                         std::string where, const ElevationManner& manner,
+                                                         std::vector<double> x, std::vector<double> y) {
   auto positions = Positions::between(crs, terrain.frame().crs, std::move(where));
   if (!positions) return positions.error();
   std::vector<std::uint8_t> ok;
   positions->convert(x, y, ok);
-  std::vector<std::optional<double>> z(x.size());
-  for (std::size_t begin = 0; begin < x.size(); begin += kAtOnce) {
-    look_up_block(terrain, manner, x, y, ok, begin, std::min(begin + kAtOnce, x.size()), z);
-  }
-  return z;
+  return look_up_all(terrain, manner, x, y, ok);
 }
+
+namespace {
 
 // Doubles travel as they lie in memory.
 static_assert(std::endian::native == std::endian::little && std::numeric_limits<double>::is_iec559);
@@ -187,7 +209,7 @@ Result<Response> many_doubles(const Context& context, const app::Tin& tin, const
     if (!name) return name.error();
     crs = *name;
   }
-  const auto z = elevations(*version.terrain, crs, "query:crs", {*voids, *by}, std::move(x), std::move(y));
+  const auto z = elevations_at(*version.terrain, crs, "query:crs", {*voids, *by}, std::move(x), std::move(y));
   if (!z) return z.error();
   std::string bytes(z->size() * sizeof(double), '\0');
   for (std::size_t i = 0; i < z->size(); ++i) {
@@ -220,7 +242,7 @@ Result<Response> many(Context& context, const Request& request) {
     x.push_back(position.x);
     y.push_back(position.y);
   }
-  const auto z = elevations(*version.terrain, message->crs.value_or(version.terrain->frame().crs), "/crs",
+  const auto z = elevations_at(*version.terrain, message->crs.value_or(version.terrain->frame().crs), "/crs",
                             {message->voids, message->interpolation}, std::move(x), std::move(y));
   if (!z) return z.error();
   Response response = json_answer(proto::elevations_json(*z, version.revision));

@@ -12,7 +12,7 @@ using tin::base::Code;
 using tin::base::error;
 
 Result<void> Patience::check() const {
-  if (request_.is_aborted()) return error(Code::kCancelled, "The server is stopping.");
+  if (request_.is_aborted()) return error(Code::kCancelled, "Nobody waits for this answer any more.");
   if (std::chrono::steady_clock::now() < end_) return {};
   return error(Code::kTooLarge, "Making the file takes more than " + std::to_string(seconds_) +
                                     " s, the limit here: ask for a smaller box or larger cells.");

@@ -29,7 +29,8 @@ constexpr std::array kOwn{
 std::vector<ExportFormat> all_formats() {
   std::vector<ExportFormat> all(kOwn.begin(), kOwn.end());
   for (const auto& mesh : proto::formats::mesh_formats()) {
-    all.push_back({mesh.name, mesh.title, mesh.suffix, mesh.media_type, ExportFamily::kMesh, export_mesh});
+    all.push_back({mesh.name, mesh.title, mesh.suffix, mesh.media_type, ExportFamily::kMesh, export_mesh,
+                   mesh.degrees});
   }
   return all;
 }

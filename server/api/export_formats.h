@@ -21,6 +21,7 @@ struct ExportFormat {
   std::string_view media_type;
   ExportFamily family;
   Result<http::Body> (*make)(ExportTask& task);
+  bool degrees = true;  // whether it can hold longitudes and latitudes
 };
 
 std::span<const ExportFormat> export_formats();

@@ -3,10 +3,12 @@
 
 #include "proto/feature_read.h"
 #include "proto/problems.h"
+#include "server/api/edit_place.h"
 #include "server/api/feature_query.h"
 #include "server/api/feature_tag.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
+#include "server/obs/metrics.h"
 
 namespace server::api {
 
@@ -43,21 +45,45 @@ tin::base::Error in_geometry(tin::base::Error problem) {
   return problem;
 }
 
-std::optional<Feature> vertex_now(const app::Tin& tin, VertexId id) {
-  return tin.read([&](const Terrain& terrain, std::uint64_t) {
-    return find_feature(terrain, FeatureKind::kVertices, std::to_string(id.value()));
-  });
+/// The tag of the vertex as the edit left it, whatever became of it since; none when it is gone, or that is
+/// not known.
+void add_tag(Response& response, const app::Tin& tin, std::uint64_t revision, VertexId id) {
+  const auto vertex = tin.vertex_after(revision, id);
+  if (vertex)
+    response.headers.emplace_back("ETag",
+                                  feature_tag(tin, vertex_feature(*vertex, tin.summary().frame), Request{}));
 }
 
-void add_tag(Response& response, const app::Tin& tin, VertexId id) {
-  // Somebody may have removed it meanwhile: then there is nothing to tag.
-  if (const auto now = vertex_now(tin, id)) response.headers.emplace_back("ETag", feature_tag(tin, *now, Request{}));
+Response created(const Context& context, const Request& request, const app::Tin& tin,
+                 const app::Edited& edited) {
+  Response response{201, {}, std::string()};
+  const std::string path = request.path + "/" + std::to_string(edited.ids[0].value());
+  response.headers.emplace_back("Location", base_url(context.config, request) + path);
+  add_tag(response, tin, edited.revision, edited.ids[0]);
+  return response;
+}
+
+Response changed(const app::Tin& tin, const app::Edited& edited) {
+  Response response{204, {}, std::string()};
+  // A patch of nothing that matters has no id to show.
+  if (!edited.ids.empty()) add_tag(response, tin, edited.revision, edited.ids[0]);
+  return response;
+}
+
+Result<app::Edited> carry_out(Context& context, app::Tin& tin, std::span<const app::WorldEdit> edits,
+                              const app::Terms& terms) {
+  if (auto room = room_for_edit(context, tin, edits); !room) return room.error();
+  auto edited = tin.edit(edits, terms);
+  if (edited) obs::metrics().edits.fetch_add(edits.size(), std::memory_order_relaxed);
+  return edited;
 }
 
 Result<Response> create(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
   if (auto json = require_json(request); !json) return json.error();
+  const auto place = edit_place(context, request);
+  if (!place) return place.error();
   const auto body = proto::read_vertex_feature(request.body, proto::FeatureBody::kWhole);
   if (!body) return body.error();
   const auto frame = (*tin)->summary().frame;
@@ -66,28 +92,32 @@ Result<Response> create(Context& context, const Request& request) {
   const auto at = own_position(*body->at, *crs, frame);
   if (!at) return at.error();
   const app::WorldEdit insert = app::InsertAt{at->x, at->y, *body->z};
-  const auto edited = (*tin)->edit({&insert, 1}, {{}, {app::now_ms(), "", ""}});
+  const auto edited = carry_out(context, **tin, {&insert, 1}, place->terms({}));
   if (!edited) return in_geometry(edited.error());
-  Response response{201, {}, std::string()};
-  const std::string path = request.path + "/" + std::to_string(edited->ids[0].value());
-  response.headers.emplace_back("Location", base_url(context.config, request) + path);
-  add_tag(response, **tin, edited->ids[0]);
-  return response;
+  return created(context, request, **tin, *edited);
 }
 
 /// The edits that bring a vertex into the state that a body asks for.
 using EditsOf = std::function<Result<std::vector<app::WorldEdit>>(const app::Tin& tin, VertexId id)>;
 
-/// Checks If-Match against the vertex as it is, and edits that very revision.
+/// Checks If-Match against the vertex as it is, and edits that very revision. A key that was used before is
+/// asked for after the vertex was looked at: whatever comes to both is there by then, or is met by the edit.
 Result<Response> change(Context& context, const Request& request, const EditsOf& edits_of) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
   const std::string_view id = request.path_parameter("feature");
   const std::string_view if_match = request.header("if-match");
+  const auto place = edit_place(context, request);
+  if (!place) return place.error();
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const auto [feature, revision] = (*tin)->read([&](const Terrain& terrain, std::uint64_t at) {
       return std::pair(find_feature(terrain, FeatureKind::kVertices, id), at);
     });
+    if (place->key) {
+      const auto before = (*tin)->answered(*place->key);
+      if (!before) return before.error();
+      if (*before) return changed(**tin, **before);
+    }
     if (!feature) return error(Code::kNotFound, "There is no vertex \"" + std::string(id) + "\".");
     if (if_match.empty()) {
       return status_answer(428, "Say with If-Match which state of the vertex this is for: its ETag, or * for any.");
@@ -97,12 +127,11 @@ Result<Response> change(Context& context, const Request& request, const EditsOf&
     }
     const auto edits = edits_of(**tin, feature->ids[0]);
     if (!edits) return edits.error();
-    const auto edited = (*tin)->edit(*edits, {std::span(&revision, 1), {app::now_ms(), "", ""}});
+    const std::uint64_t seen = revision;
+    const auto edited = carry_out(context, **tin, *edits, place->terms({&seen, 1}));
     if (!edited && edited.error().code == Code::kPrecondition) continue;
     if (!edited) return in_geometry(edited.error());
-    Response response{204, {}, std::string()};
-    add_tag(response, **tin, feature->ids[0]);
-    return response;
+    return changed(**tin, *edited);
   }
   return error(Code::kTooMany, "Other edits came first each time; try again.");
 }

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "proto/crs_uri.h"
+#include "proto/datetime.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -28,17 +29,6 @@ Result<PageToken> read_token(const std::string& text) {
     at = read.ptr + 1;
   }
   return error(Code::kMalformed, "This is no token that a page gave.", "query:next");
-}
-
-/// A moment or an interval of RFC 3339, as far as its letters go: features have no time, so it selects nothing.
-Result<void> check_datetime(std::string_view text) {
-  const bool plausible = !text.empty() && text.size() <= 80 &&
-                         std::all_of(text.begin(), text.end(), [](char c) {
-                           return (c >= '0' && c <= '9') || std::string_view("-:.TtZz+/").find(c) != std::string_view::npos;
-                         });
-  const bool digits = std::any_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (plausible && (digits || text == "../..")) return {};
-  return error(Code::kMalformed, "A datetime is a moment or an interval of RFC 3339.", "query:datetime");
 }
 
 }  // namespace
@@ -94,6 +84,13 @@ Result<FeatureKind> collection_of(const Request& request) {
   return error(Code::kNotFound, "There is no such collection of features: there are vertices, triangles and edges.");
 }
 
+Result<void> check_datetime(const Request& request) {
+  const auto text = request.query_value("datetime");
+  if (!text) return {};
+  const auto span = proto::parse_datetime(*text, "query:datetime");
+  return span ? Result<void>() : span.error();
+}
+
 Result<FeatureQuery> read_feature_query(const LimitConfig& limits, const Request& request) {
   FeatureQuery query;
   const auto kind = collection_of(request);
@@ -106,9 +103,7 @@ Result<FeatureQuery> read_feature_query(const LimitConfig& limits, const Request
     query.limit = static_cast<std::size_t>(
         std::min<std::uint64_t>(*limit, static_cast<std::uint64_t>(limits.page_size_max)));
   }
-  if (const auto text = request.query_value("datetime")) {
-    if (auto fine = check_datetime(*text); !fine) return fine.error();
-  }
+  if (auto fine = check_datetime(request); !fine) return fine.error();
   if (const auto text = request.query_value("next")) {
     const auto token = read_token(*text);
     if (!token) return token.error();

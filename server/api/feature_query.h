@@ -44,6 +44,9 @@ struct FeatureQuery {
   std::optional<PageToken> token;
 };
 
+/// Reads "datetime" and forgets it: what a TIN has is of no time, so it selects nothing. Errors: kMalformed.
+Result<void> check_datetime(const Request& request);
+
 /// Reads limit, bbox, bbox-crs, datetime and next. Errors: kMalformed at "query:..."; kNotFound for the collection.
 Result<FeatureQuery> read_feature_query(const LimitConfig& limits, const Request& request);
 

@@ -136,15 +136,19 @@ std::size_t feature_count(const Terrain& terrain, FeatureKind kind) {
   return kind == FeatureKind::kTriangles ? terrain.triangle_count() : tin::query::edge_count(terrain);
 }
 
+Feature vertex_feature(const tin::terrain::Vertex& vertex, const tin::frame::Frame& frame) {
+  Feature feature;
+  feature.ids[0] = vertex.id;
+  feature.corners[0] = {frame.x.world(vertex.at.x), frame.y.world(vertex.at.y), vertex.z};
+  return feature;
+}
+
 std::optional<Feature> find_feature(const Terrain& terrain, FeatureKind kind, std::string_view id) {
   if (kind == FeatureKind::kVertices) {
     const auto ids = parse_ids<1>(id);
-    const auto slot = ids ? terrain.slot_of((*ids)[0]) : std::nullopt;
-    if (!slot) return std::nullopt;
-    Feature feature;
-    feature.ids[0] = (*ids)[0];
-    feature.corners[0] = world(terrain, *slot);
-    return feature;
+    const auto vertex = ids ? terrain.vertex((*ids)[0]) : std::nullopt;
+    if (!vertex) return std::nullopt;
+    return vertex_feature(*vertex, terrain.frame());
   }
   if (kind == FeatureKind::kTriangles) {
     const auto ids = parse_ids<3>(id);

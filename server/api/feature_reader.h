@@ -85,6 +85,9 @@ class FeatureReader {
   std::vector<std::uint8_t> ok_;
 };
 
+/// A vertex as a feature, in the terrain's CRS.
+Feature vertex_feature(const tin::terrain::Vertex& vertex, const tin::frame::Frame& frame);
+
 /// The feature of a kind that an id names ("7", "1-2-3", "1-2"), in the terrain's CRS; nothing when there is none.
 std::optional<Feature> find_feature(const tin::terrain::Terrain& terrain, FeatureKind kind, std::string_view id);
 

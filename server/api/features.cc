@@ -71,22 +71,6 @@ Result<std::uint64_t> count_matched(const Terrain& terrain, const Wanted& wanted
   return count;
 }
 
-std::string encoded(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-                       std::string_view("-._~,:/").find(c) != std::string_view::npos;
-    if (plain) {
-      out += c;
-    } else {
-      constexpr char kDigits[] = "0123456789ABCDEF";
-      out.append({'%', kDigits[byte >> 4], kDigits[byte & 15]});
-    }
-  }
-  return out;
-}
-
 /// The request's own target with another place to go on.
 std::string page_href(const Request& request, const Wanted& wanted, const std::optional<PageToken>& token) {
   std::string href = request.path + "?limit=" + std::to_string(wanted.query.limit);

@@ -7,6 +7,7 @@
 #include "proto/bbox.h"
 #include "server/api/answer.h"
 #include "server/api/change_stream.h"
+#include "server/api/edit_place.h"
 #include "server/api/routes.h"
 
 namespace server::api {
@@ -157,14 +158,12 @@ Result<Response> revert(Context& context, const Request& request) {
   auto remark = proto::read_revert_request(request.body);
   if (!remark) return remark.error();
   if (remark->note.empty()) remark->note = "undo of revision " + std::to_string(*revision);
-  const Slot slot(context.edits);
-  if (!slot.taken()) return error(Code::kTooMany, "Too many edits wait already.");
+  const auto place = edit_place(context, request);
+  if (!place) return place.error();
   const auto expected = expected_revisions(**tin, request.header("if-match"));
   if (!expected) return expected.error();
-  const auto key = request_key(request);
-  if (!key) return key.error();
   const auto reverted =
-      (*tin)->revert(*revision, {*expected, {app::now_ms(), remark->author, remark->note}, *key});
+      (*tin)->revert(*revision, place->terms(*expected, *remark), &context.catalogue.memory());
   if (!reverted) return reverted.error();
   return tagged(proto::edit_result_json(reverted->revision, reverted->ids), **tin, reverted->revision,
                 request);

@@ -32,8 +32,9 @@ Result<Response> landing(const Request& request) {
   return response;
 }
 
-Result<Response> conformance(const Request&) {
-  return json_answer(proto::conformance_json(server_conformance()));
+Result<Response> conformance(const Request& request) {
+  return negotiated(request, proto::conformance_json(server_conformance()), kJson,
+                    conformance_page(server_conformance()));
 }
 
 }  // namespace

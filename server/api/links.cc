@@ -16,9 +16,32 @@ std::string base_url(const Config& config, const Request& request) {
   return host.empty() || !plain ? std::string() : "http://" + std::string(host);
 }
 
+std::string encoded(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                       std::string_view("-._~,:/").find(c) != std::string_view::npos;
+    if (plain) {
+      out += c;
+    } else {
+      constexpr char kDigits[] = "0123456789ABCDEF";
+      out.append({'%', kDigits[byte >> 4], kDigits[byte & 15]});
+    }
+  }
+  return out;
+}
+
 void make_absolute(std::vector<proto::Link>& links, const std::string& base) {
   for (proto::Link& link : links) {
     if (link.href.starts_with('/')) link.href = base + link.href;
+  }
+}
+
+void make_absolute(proto::CollectionDocument& document, const std::string& base) {
+  make_absolute(document.links, base);
+  for (proto::DataQuery& query : document.queries) {
+    if (query.href.starts_with('/')) query.href = base + query.href;
   }
 }
 

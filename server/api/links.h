@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "proto/messages.h"
@@ -15,8 +16,12 @@ namespace server::api {
 /// known, so that links stay relative to the root. Without a slash at the end.
 std::string base_url(const Config& config, const Request& request);
 
+/// A value as it stands in the query of a URL.
+std::string encoded(std::string_view text);
+
 /// Puts `base` before every href that begins with a slash.
 void make_absolute(std::vector<proto::Link>& links, const std::string& base);
+void make_absolute(proto::CollectionDocument& document, const std::string& base);
 
 /// What a person sees instead of JSON: the same resource with the same links.
 struct HtmlPage {

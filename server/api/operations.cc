@@ -28,6 +28,27 @@ void write_data(const Context& context, MetricsText& text) {
       .sample("", static_cast<double>(counted.revisions.load()));
 }
 
+void write_queues(const Context& context, MetricsText& text) {
+  const auto commits = context.catalogue.store().counts();
+  text.family("tinsmith_commits_total", "counter", "Commits of the store")
+      .sample("", static_cast<double>(commits.commits));
+  text.family("tinsmith_committed_writes_total", "counter", "Writes that those commits made durable")
+      .sample("", static_cast<double>(commits.writes));
+  text.family("tinsmith_commit_seconds_total", "counter", "Time that commits took, syncs included")
+      .sample("", commits.seconds);
+  text.family("tinsmith_commit_queue", "gauge", "Writes that wait for a commit or its end")
+      .sample("", static_cast<double>(commits.waiting));
+  text.family("tinsmith_requests_in_work", "gauge", "Requests that hold one of the bounded places, by kind");
+  const auto in_work = [&](const char* kind, const Slots& slots) {
+    text.sample(MetricsText::label("kind", kind), static_cast<double>(slots.taken()));
+  };
+  in_work("edit", context.edits);
+  in_work("upload", context.uploads);
+  in_work("export", context.exports);
+  in_work("waiting_for_job", context.waiting);
+  in_work("change_stream", context.listeners);
+}
+
 void write_jobs(const Context& context, MetricsText& text) {
   const auto jobs = context.jobs.list();
   const auto count = [&](jobs::JobState state) {
@@ -60,6 +81,7 @@ Response metrics_answer(const Context& context) {
         .sample("", static_cast<double>(context.connections()));
   }
   write_data(context, text);
+  write_queues(context, text);
   write_jobs(context, text);
   const auto& memory = context.catalogue.memory();
   text.family("tinsmith_memory_estimate_bytes", "gauge",

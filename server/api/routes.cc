@@ -13,6 +13,7 @@ http::Router make_router(Context& context) {
   add_tin_service(router, context);
   add_collections(router, context);
   add_coverage(router, context);
+  add_edr(router, context);
   add_slope(router, context);
   add_profile(router, context);
   add_contours(router, context);

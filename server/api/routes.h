@@ -53,6 +53,7 @@ void add_elevation(http::Router& router, Context& context);
 void add_tin_service(http::Router& router, Context& context);
 void add_collections(http::Router& router, Context& context);
 void add_coverage(http::Router& router, Context& context);
+void add_edr(http::Router& router, Context& context);
 void add_slope(http::Router& router, Context& context);
 void add_profile(http::Router& router, Context& context);
 void add_contours(http::Router& router, Context& context);

@@ -3,6 +3,7 @@
 #include "proto/messages.h"
 #include "proto/openapi.h"
 #include "server/api/conformance.h"
+#include "server/api/coverage.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
 
@@ -12,9 +13,8 @@ namespace {
 Result<Response> conformance(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
-  HtmlPage page{"What this service conforms to", "", {}, {}, {}, {}};
-  for (const std::string& name : tin_conformance()) page.links.push_back({name, name, "", ""});
-  return negotiated(request, proto::conformance_json(tin_conformance()), kJson, page);
+  const auto classes = tin_conformance(has_surface((*tin)->summary()));
+  return negotiated(request, proto::conformance_json(classes), kJson, conformance_page(classes));
 }
 
 Result<Response> api(Context& context, const Request& request) {

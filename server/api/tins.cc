@@ -1,4 +1,7 @@
 // /tins: list, create, show, delete.
+#include <map>
+#include <mutex>
+
 #include "proto/bbox.h"
 #include "proto/history.h"
 #include "server/api/conformance.h"
@@ -8,6 +11,7 @@
 #include "server/api/tin_document.h"
 #include "server/api/upload.h"
 #include "server/app/source.h"
+#include "server/app/threads.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -19,6 +23,23 @@ using tin::frame::Extent;
 using tin::frame::Frame;
 using tin::terrain::Placement;
 using tin::terrain::Terrain;
+
+namespace {
+
+/// Whether positions of a CRS are longitudes and latitudes. PROJ is asked once for each CRS.
+bool in_degrees(const std::string& crs) {
+  constexpr std::size_t kMostKnown = 1000;
+  static std::mutex mutex;
+  static std::map<std::string, bool, std::less<>> known;
+  if (crs.empty()) return false;
+  const std::lock_guard lock(mutex);
+  if (const auto found = known.find(crs); found != known.end()) return found->second;
+  if (known.size() >= kMostKnown) known.clear();
+  const auto info = gdal::read_crs(crs);
+  return known[crs] = info && info->scale.geographic;
+}
+
+}  // namespace
 
 proto::TinDocument tin_document(const app::Tin& tin) {
   const app::Summary summary = tin.summary();
@@ -49,7 +70,9 @@ proto::TinDocument tin_document(const app::Tin& tin) {
                     {self + "/api", "service-desc", std::string(kOpenApiType), "The contract of this TIN (OpenAPI 3.0)"},
                     {self + "/conformance", "conformance", std::string(kJson), "Conformance classes"},
                     {self + "/collections", "data", std::string(kJson), "Vertices, triangles and edges"}};
+  const bool degrees = in_degrees(summary.frame.crs);
   for (const ExportFormat& format : export_formats()) {
+    if (degrees && !format.degrees) continue;
     document.links.push_back({self + "/export?f=" + std::string(format.name), "enclosure",
                               std::string(format.media_type), std::string(format.title)});
   }
@@ -84,7 +107,10 @@ Result<Response> list(Context& context, const Request& request) {
   answer.number_matched = tins.size();
   for (std::size_t i = 0; i < tins.size() && i < limit; ++i) answer.tins.push_back(tin_document(*tins[i]));
   answer.links = {{"/tins", "self", std::string(kJson), ""}};
-  return json_answer(proto::tin_list_json(answer));
+  HtmlPage page{"Terrains", std::to_string(tins.size()) + " in all", {}, {}, {}, {}};
+  for (const auto& tin : answer.tins)
+    page.links.push_back({"/tins/" + tin.id, "item", "", tin.title.empty() ? tin.id : tin.title});
+  return negotiated(request, proto::tin_list_json(answer), kJson, page);
 }
 
 HtmlPage page_of(const proto::TinDocument& document) {
@@ -182,7 +208,7 @@ Result<Response> create_from_json(Context& context, const Request& request) {
     if (!at) return within("/vertices/" + std::to_string(i), at.error());
     placements.push_back({*at, message->vertices[i].z});
   }
-  auto terrain = Terrain::build(*frame, placements, message->duplicates);
+  auto terrain = Terrain::build(*frame, placements, message->duplicates, nullptr, app::engine_threads());
   if (!terrain) return within("/vertices", terrain.error());
   std::string source;
   if (!placements.empty())

@@ -8,6 +8,7 @@
 #include "server/api/tin_document.h"
 #include "server/app/import.h"
 #include "server/app/simplify.h"
+#include "server/app/threads.h"
 #include "server/gdal/crs.h"
 
 namespace server::api {
@@ -58,7 +59,7 @@ Result<std::optional<tin::simplify::Options>> read_simplification(const Request&
     return error(Code::kInvalidValue, "A tolerance must not be negative.", "query:tolerance");
   tin::simplify::Options options;
   options.tolerance = *tolerance;
-  options.threads = app::simplify_threads();
+  options.threads = app::engine_threads();
   if (effort) {
     const auto named = proto::parse_effort(*effort, "query:effort");
     if (!named) return named.error();
@@ -106,6 +107,7 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   options.z_field = request.query_value("z-field").value_or("");
   options.max_samples = static_cast<std::uint64_t>(context.config.limits.vertices_per_tin);
   import.decoder = context.decoder;
+  options.max_unpacked_bytes = static_cast<std::uint64_t>(context.config.limits.unpacked_bytes);
   options.max_pixels = static_cast<std::uint64_t>(context.config.limits.raster_pixels);
   if (const auto crs = request.query_value("crs")) {
     const auto name = proto::parse_crs(*crs, "query:crs");
@@ -150,7 +152,7 @@ Result<Response> import_as_job(Context& context, Request& request, app::ImportRe
         return proto::tin_json(tin_document(**made));
       });
   if (!job) return job.error();
-  return job_accepted_answer(context.jobs, *job);
+  return job_accepted_answer(context.jobs, *job, request);
 }
 
 }  // namespace
@@ -198,6 +200,7 @@ Result<Response> create_from_upload(Context& context, Request& request) {
     return error(Code::kTooMany,
                  "Too many files are being read; try again, or ask with Prefer: respond-async.");
   tin::base::Progress progress;
+  const http::Attention::Work unless_unwanted(request.attention, progress);
   const auto made = app::import_tin(context.catalogue, request.body_file, *import, progress);
   if (!made) return made.error();
   return created_answer(context, **made, request);

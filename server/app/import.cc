@@ -2,6 +2,7 @@
 
 #include "server/app/source.h"
 #include "server/app/thinning.h"
+#include "server/app/threads.h"
 #include "server/app/time_budget.h"
 
 namespace server::app {
@@ -21,7 +22,7 @@ SourceSamples raster_source(gdal::Import& import) {
 
 /// Every sample becomes a vertex.
 Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, Progress& progress) {
-  auto terrain = Terrain::build(std::move(import.frame), import.placements, duplicates, &progress);
+  auto terrain = Terrain::build(std::move(import.frame), import.placements, duplicates, &progress, engine_threads());
   if (!terrain) return terrain.error();
   import.placements = {};
   terrain->set_source_grid(import.grid);
@@ -35,7 +36,8 @@ Result<ImportedTerrain> build_from_heights(gdal::Import import, const tin::simpl
   SourceSamples source = raster_source(import);
   auto chosen = tin::simplify::simplify_samples(source, options, &progress);
   if (!chosen) return chosen.error();
-  auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress);
+  auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress,
+                                engine_threads());
   if (!terrain) return terrain.error();
   terrain->set_source_grid(import.grid);
   return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, false, std::move(import.driver)};
@@ -53,6 +55,17 @@ Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplic
   return made;
 }
 
+/// What was read and the terrain that becomes of it. A raster that is simplified at once is never a terrain
+/// as a whole: working on it took 70 bytes per sample where most, and more than anybody wants, became
+/// vertices.
+std::uint64_t bytes_to_build(const gdal::Import& import) {
+  constexpr std::uint64_t kBytesPerSample = 80;
+  const auto samples = static_cast<std::uint64_t>(import.heights.size());
+  if (import.placements.empty()) return samples * kBytesPerSample;
+  return import.placements.size() * (sizeof(tin::terrain::Placement) + kBytesPerVertex) +
+         samples * sizeof(double);
+}
+
 Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, const TimeBudget& budget,
                               Progress& progress) {
   if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress);
@@ -67,7 +80,7 @@ Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request,
 }  // namespace
 
 Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const ImportRequest& request,
-                                       Progress& progress) {
+                                       Progress& progress, MemoryBudget* memory) {
   const TimeBudget budget(request.max_seconds);
   progress.begin_phase(0, 0.3);
   gdal::ImportOptions options = request.options;
@@ -77,6 +90,12 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
   if (request.vertical_unit) {
     import->frame.vertical_unit = request.vertical_unit->name;
     import->frame.vertical_unit_m = request.vertical_unit->metres;
+  }
+  std::optional<MemoryBudget::Lease> lease;
+  if (memory != nullptr) {
+    auto given = memory->lease(bytes_to_build(*import));
+    if (!given) return given.error();
+    lease.emplace(std::move(*given));
   }
   progress.begin_phase(0.3, 0.9);
   auto made = build(*std::move(import), request, budget, progress);
@@ -88,7 +107,7 @@ Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesys
                                         const ImportRequest& request, Progress& progress) {
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
   if (auto room = catalogue.memory().check(0); !room) return room.error();
-  auto made = import_terrain(file, request, progress);
+  auto made = import_terrain(file, request, progress, &catalogue.memory());
   if (!made) return made.error();
   const auto completeness = made->report ? Completeness::kSomeSamples : Completeness::kAllSamples;
   std::string source = attach_source(made->terrain, made->source, completeness);

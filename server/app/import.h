@@ -37,10 +37,11 @@ struct ImportedTerrain {
 };
 
 /// Reads the file and triangulates its samples, or what the request leaves of them. Reports progress over all
-/// of it. Errors: as gdal::import_file, Terrain::build and simplify::simplify.
+/// of it. What it takes is taken from `memory`, if that is given, until it returns. Errors: as
+/// gdal::import_file, Terrain::build and simplify::simplify; kTooMany (no memory).
 tin::base::Result<ImportedTerrain> import_terrain(const std::filesystem::path& file,
-                                                  const ImportRequest& request,
-                                                  tin::base::Progress& progress);
+                                                  const ImportRequest& request, tin::base::Progress& progress,
+                                                  MemoryBudget* memory = nullptr);
 
 /// Reads the file, triangulates its samples and stores the TIN with them. Reports progress over all of it.
 /// Errors: as gdal::import_file, Terrain::build, simplify::simplify and Catalogue::create; then nothing is

@@ -24,6 +24,11 @@ std::uint64_t estimated_bytes(const tin::terrain::Terrain& terrain) {
          (grid == nullptr ? 0 : grid->valid.size() * sizeof(std::uint64_t));
 }
 
+std::uint64_t estimated_bytes(const tin::terrain::SourceSamples& source) {
+  const auto of = [](const auto& array) { return std::uint64_t{array.size()} * sizeof(array[0]); };
+  return std::visit(of, source.heights().stored) + of(source.positions()) + of(source.valid());
+}
+
 std::uint64_t default_memory_limit() {
   std::uint64_t bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tin/base/result.h"
+#include "tin/terrain/source_samples.h"
 #include "tin/terrain/terrain.h"
 
 namespace server::app {
@@ -17,6 +18,9 @@ inline constexpr std::uint64_t kBytesPerVertex = 160;
 
 /// What a terrain takes, its source's mask included.
 std::uint64_t estimated_bytes(const tin::terrain::Terrain& terrain);
+
+/// What the samples of a source take that are in hand.
+std::uint64_t estimated_bytes(const tin::terrain::SourceSamples& source);
 
 /// Three quarters of what the machine, or the group of processes this one is in, may have.
 std::uint64_t default_memory_limit();

@@ -1,10 +1,9 @@
 #include "server/app/simplify.h"
 
-#include "server/app/time_budget.h"
-
-#include <algorithm>
 #include <chrono>
-#include <thread>
+
+#include "server/app/threads.h"
+#include "server/app/time_budget.h"
 
 namespace server::app {
 
@@ -45,10 +44,6 @@ Result<std::shared_ptr<Tin>> create_thinned(Catalogue& catalogue, const Simplify
 
 }  // namespace
 
-unsigned simplify_threads() {
-  return std::max(1U, std::thread::hardware_concurrency());
-}
-
 Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& request,
                                 tin::base::Progress& progress) {
   const auto start = Clock::now();
@@ -73,7 +68,7 @@ Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& req
   }
   progress.begin_phase(0.02, 0.95);
   auto options = request.options;
-  options.threads = simplify_threads();
+  options.threads = engine_threads();
   const TimeBudget budget(request.max_seconds, start);
   options.out_of_time = budget.question();
   options.protect = protected_positions(*seen.terrain, request.protect);

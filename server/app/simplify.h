@@ -51,9 +51,6 @@ struct Simplified {
   bool edited_meanwhile = false;
 };
 
-/// How many threads a simplification takes: the processor's. The result does not depend on it.
-unsigned simplify_threads();
-
 /// Errors: as simplify::simplify, Catalogue::create, Tin::source and Tin::land; a cancelled or failed job
 /// changes nothing.
 tin::base::Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& request,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/app/threads.h"
+
 namespace server::app {
 
 using tin::terrain::Change;
@@ -53,7 +55,7 @@ Fitting fit(const Terrain& seen, const Terrain& now, const Thinning& thinning) {
 }
 
 Terrain rebuilt(const Terrain& terrain, const Fitting& fitting) {
-  Terrain rest = terrain.replaced(fitting.removed, fitting.added);
+  Terrain rest = terrain.replaced(fitting.removed, fitting.added, engine_threads());
   Change heights;
   for (const tin::terrain::Vertex& vertex : fitting.changed) {
     heights.steps.push_back({vertex.id, tin::terrain::Placement{vertex.at, rest.vertex(vertex.id)->z},

@@ -1,7 +1,10 @@
 #include "server/app/tin.h"
 
+#include <algorithm>
 #include <tuple>
+#include <utility>
 
+#include "server/app/threads.h"
 #include "tin/codec/change.h"
 #include "tin/codec/checkpoint.h"
 #include "tin/codec/source.h"
@@ -12,7 +15,6 @@ namespace server::app {
 using tin::base::Code;
 using tin::base::error;
 using tin::base::Result;
-using tin::terrain::Edit;
 using tin::terrain::Terrain;
 
 Tin::Tin(TinState state, store::Store& store, std::size_t max_vertices)
@@ -76,7 +78,7 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, const Terms& terms) {
     require_terrain();
     return std::pair(terrain_->frame(), open_resolution_.has_value());
   }();
-  std::vector<Edit>
+  LatticeEdits
       lattice_edits;  // made here, where nobody waits; while the frame is open only when it is our turn
   if (open && inserts_any(edits)) {
     write.alone = true;
@@ -85,15 +87,36 @@ Result<Edited> Tin::edit(std::span<const WorldEdit> edits, const Terms& terms) {
     write.apply = [&](Terrain& terrain) -> Result<Terrain::Applied> {
       const auto made = to_lattice(edits, terrain.frame());
       if (!made) return made.error();
-      return terrain.apply(*made, duplicates_);
+      return apply(terrain, *made, write);
     };
   } else {
     auto made = to_lattice(edits, frame);
     if (!made) return made.error();
     lattice_edits = std::move(*made);
-    write.apply = [&](Terrain& terrain) { return terrain.apply(lattice_edits, duplicates_); };
+    // What an area holds is known only then: so it is not done twice, and readers wait for the disk.
+    if (!lattice_edits.areas.empty()) write.weight += kDoneTwice;
+    write.apply = [&](Terrain& terrain) { return apply(terrain, lattice_edits, write); };
   }
   return submit(write);
+}
+
+Result<Terrain::Applied> Tin::apply(Terrain& terrain, const LatticeEdits& edits, Write& write) const {
+  return app::apply(terrain, edits, duplicates_, write.terms.most_within, write.areas);
+}
+
+std::optional<tin::terrain::Vertex> Tin::vertex_after(std::uint64_t revision, VertexId vertex) const {
+  const auto [present, now] = read([&](const Terrain& terrain, std::uint64_t at) {
+    return std::pair(at, at == revision ? terrain.vertex(vertex) : std::nullopt);
+  });
+  if (present == revision) return now;
+  const auto rows = store_.read_journal(id(), {.first = revision, .last = revision});
+  if (!rows || rows->empty()) return std::nullopt;
+  const auto change = tin::codec::decode_change(rows->front().record);
+  if (!change) return std::nullopt;
+  const auto last = std::find_if(change->steps.rbegin(), change->steps.rend(),
+                                 [&](const tin::terrain::Step& step) { return step.id == vertex; });
+  if (last == change->steps.rend() || !last->after) return std::nullopt;
+  return tin::terrain::Vertex{vertex, last->after->at, last->after->z};
 }
 
 Result<void> Tin::rename(std::string_view title) {
@@ -144,6 +167,8 @@ Result<std::shared_ptr<const tin::terrain::SourceSamples>> Tin::source() const {
   if (!decoded) return decoded.error();
   Source source = std::make_shared<const tin::terrain::SourceSamples>(*std::move(decoded));
   source_ = source;
+  const std::lock_guard counted(past_mutex_);
+  source_in_hand_ = source;
   return source;
 }
 
@@ -214,7 +239,7 @@ std::string Tin::encode(const Terrain& terrain, tin::terrain::Duplicates duplica
 Result<TinState> Tin::decode(const store::TinRecord& record, std::string_view bytes) {
   auto checkpoint = tin::codec::decode_checkpoint(bytes);
   if (!checkpoint) return checkpoint.error();
-  auto terrain = Terrain::restore(checkpoint->frame, checkpoint->vertices, checkpoint->next_id);
+  auto terrain = Terrain::restore(checkpoint->frame, checkpoint->vertices, checkpoint->next_id, engine_threads());
   if (!terrain) return terrain.error();
   if (terrain->digest() != checkpoint->digest) {
     return error(Code::kStorage, "The checkpoint's digest is not that of its vertices.");

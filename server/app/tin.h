@@ -23,6 +23,7 @@
 
 #include "server/app/changed_areas.h"
 #include "server/app/fair_mutex.h"
+#include "server/app/memory.h"
 #include "server/app/thinning.h"
 #include "server/app/version.h"
 #include "server/app/world_edit.h"
@@ -94,8 +95,8 @@ class Tin {
   Version version() const;
   Summary summary() const;
 
-  /// What the present terrain takes, and those of versions that are out still; as far as known without
-  /// waiting.
+  /// What the present terrain takes, those of versions that are out still, and the source while somebody has
+  /// it in hand; as far as known without waiting.
   std::uint64_t held_bytes() const;
   /// What the next edit will copy because a version is out.
   std::uint64_t copy_bytes() const;
@@ -120,7 +121,16 @@ class Tin {
 
   /// Undoes one revision, as a revision. Errors: kNotFound (no such revision), kGone (it is no longer kept),
   /// kConflict (later ones changed what it changed), and as edit().
-  tin::base::Result<Edited> revert(std::uint64_t revision, const Terms& terms);
+  /// What it takes meanwhile is taken from `memory`, if that is given.
+  tin::base::Result<Edited> revert(std::uint64_t revision, const Terms& terms,
+                                   MemoryBudget* memory = nullptr);
+
+  /// What was answered under the key, if anything was. Errors: kInvalidValue (the key came with another
+  /// request before), kStorage.
+  tin::base::Result<std::optional<Edited>> answered(const RequestKey& key) const;
+
+  /// A vertex as a revision left it: nothing when it was gone then, or when that is not known any more.
+  std::optional<tin::terrain::Vertex> vertex_after(std::uint64_t revision, VertexId id) const;
 
   /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`,
   /// and positions where another stands by now, stay out of it. A large one is prepared beside readers and
@@ -162,7 +172,11 @@ class Tin {
   using Lock = std::unique_lock<FairSharedMutex>;
   struct Batch;
 
+  // Above so many steps, doing a batch again costs readers more than waiting for the disk with it.
+  static constexpr std::size_t kDoneTwice = 256;
+
   tin::base::Error too_many_vertices() const;
+  tin::base::Result<Terrain::Applied> apply(Terrain& terrain, const LatticeEdits& edits, Write& write) const;
   void require_terrain() const;  // throws if it was lost
 
   // The writer's turn: one thread at a time, see WriteQueue.
@@ -185,9 +199,9 @@ class Tin {
   void remember_past() noexcept;  // that the present terrain goes, so that held_bytes() counts it as long as it is held
   void reload() noexcept;
 
-  tin::base::Result<std::optional<Edited>> answered_before(const Terms& terms);
   tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning, const Terms& terms);
-  tin::base::Result<Edited> replay_aside(const tin::terrain::Change& change, const Terms& terms);
+  tin::base::Result<Edited> replay_aside(const tin::terrain::Change& change, const Terms& terms,
+                                         MemoryBudget* memory);
   tin::base::Error explain_conflict(std::uint64_t revision, const tin::terrain::Change& inverse,
                                     const tin::base::Error& conflict);
 
@@ -214,6 +228,7 @@ class Tin {
   ChangedAreas changed_areas_;
   mutable std::mutex source_mutex_;  // held while the source is read, so that it is read once
   mutable std::weak_ptr<const tin::terrain::SourceSamples> source_;
+  mutable std::weak_ptr<const tin::terrain::SourceSamples> source_in_hand_;  // the same, under past_mutex_
   std::atomic<std::uint64_t> steps_since_checkpoint_;
   WriteQueue<Write> writes_;
 };

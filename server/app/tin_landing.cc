@@ -2,6 +2,7 @@
 // simplification in.
 #include <algorithm>
 
+#include "server/app/threads.h"
 #include "server/app/tin.h"
 #include "tin/codec/change.h"
 #include "tin/terrain/vertex_set.h"
@@ -35,7 +36,7 @@ Result<Terrain::Applied> replay(Terrain& terrain, const Change& change) {
 Result<std::shared_ptr<Terrain>> replayed(const Terrain& terrain, const Change& change) {
   VertexSet set(terrain.vertices_by_id(), terrain.next_id());
   if (auto done = set.replay(change); !done) return done.error();
-  auto built = Terrain::restore(terrain.frame(), set.vertices(), set.next_id());
+  auto built = Terrain::restore(terrain.frame(), set.vertices(), set.next_id(), engine_threads());
   if (!built) return error(Code::kConflict, "Another vertex stands where one would return to.");
   built->set_source_grid(terrain.shared_source_grid());
   built->set_amendments(terrain.amendments());
@@ -49,10 +50,12 @@ std::string name_of(VertexId id) {
 
 }  // namespace
 
-Result<Edited> Tin::revert(std::uint64_t revision, const Terms& terms) {
-  auto answered = answered_before(terms);
-  if (!answered) return answered.error();
-  if (*answered) return std::move(**answered);
+Result<Edited> Tin::revert(std::uint64_t revision, const Terms& terms, MemoryBudget* memory) {
+  if (terms.key) {
+    auto before = answered(*terms.key);
+    if (!before) return before.error();
+    if (*before) return std::move(**before);
+  }
   const auto rows = store_.read_journal(id(), {.first = revision, .last = revision});
   if (!rows) return rows.error();
   if (rows->empty()) {
@@ -66,8 +69,12 @@ Result<Edited> Tin::revert(std::uint64_t revision, const Terms& terms) {
   const Change inverse = change->inverse();
   Result<Edited> done = error(Code::kConflict, "");
   if (inverse.steps.size() > kSmall) {
-    done = replay_aside(inverse, terms);
+    done = replay_aside(inverse, terms, memory);
   } else {
+    const auto added = std::count_if(inverse.steps.begin(), inverse.steps.end(),
+                                     [](const tin::terrain::Step& step) { return !step.before; });
+    const auto bytes = static_cast<std::uint64_t>(added) * kBytesPerVertex + copy_bytes();
+    if (auto room = memory == nullptr ? Result<void>() : memory->check(bytes); !room) return room.error();
     Write write(terms);
     write.weight = inverse.steps.size();
     write.apply = [&](Terrain& terrain) { return replay(terrain, inverse); };
@@ -77,9 +84,15 @@ Result<Edited> Tin::revert(std::uint64_t revision, const Terms& terms) {
   return done;
 }
 
-Result<Edited> Tin::replay_aside(const Change& change, const Terms& terms) {
+Result<Edited> Tin::replay_aside(const Change& change, const Terms& terms, MemoryBudget* memory) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const Version base = version();
+    std::optional<MemoryBudget::Lease> lease;
+    if (memory != nullptr) {
+      auto given = memory->lease(estimated_bytes(*base.terrain) + change.steps.size() * kBytesPerVertex);
+      if (!given) return given.error();
+      lease.emplace(std::move(*given));
+    }
     auto prepared = replayed(*base.terrain, change);
     if (!prepared) return prepared.error();
     Write write(terms);

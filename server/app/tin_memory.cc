@@ -1,4 +1,5 @@
-// What a TIN takes of the memory: its present terrain, and those before it that somebody still reads.
+// What a TIN takes of the memory: its present terrain, those before it that somebody still reads, and its
+// source while a simplification works with it.
 #include "server/app/memory.h"
 #include "server/app/tin.h"
 
@@ -15,6 +16,7 @@ std::uint64_t Tin::held_bytes() const {
   for (const auto& past : past_) {
     if (const auto terrain = past.lock()) bytes += estimated_bytes(*terrain);
   }
+  if (const auto source = source_in_hand_.lock()) bytes += estimated_bytes(*source);
   return bytes;
 }
 

@@ -18,9 +18,6 @@ using tin::terrain::Terrain;
 
 namespace {
 
-// Above so many steps, doing a batch again costs readers more than waiting for the disk with it.
-constexpr std::size_t kDoneTwice = 256;
-
 tin::base::Error out_of_memory() {
   return error(Code::kTooMany, "There is not enough memory for this now; nothing was changed.");
 }
@@ -108,19 +105,18 @@ bool Tin::settled_before(Write& write) {
   } else if (!terrain_) {
     write.outcome = out_of_memory();
   } else if (write.terms.key) {
-    auto answered = answered_before(write.terms);
-    if (!answered) write.outcome = answered.error();
-    if (answered && *answered) write.outcome = std::move(**answered);
+    auto before = answered(*write.terms.key);
+    if (!before) write.outcome = before.error();
+    if (before && *before) write.outcome = std::move(**before);
   }
   return write.outcome.has_value();
 }
 
-Result<std::optional<Edited>> Tin::answered_before(const Terms& terms) {
-  if (!terms.key) return std::optional<Edited>();
-  const auto answer = store_.find_answer(id(), terms.key->key);
+Result<std::optional<Edited>> Tin::answered(const RequestKey& key) const {
+  const auto answer = store_.find_answer(id(), key.key);
   if (!answer) return answer.error();
   if (!*answer) return std::optional<Edited>();
-  if ((*answer)->request != terms.key->request) return other_request();
+  if ((*answer)->request != key.request) return other_request();
   auto edited = decode_edited((*answer)->bytes);
   if (!edited) return edited.error();
   return std::optional<Edited>(std::move(*edited));
@@ -215,7 +211,7 @@ void Tin::apply_one(Write& write, Batch& batch) {
   if (!applied->change.steps.empty()) ++batch.revision;
   if (!batch.twice) terrain_->amend(applied->change);
   batch.steps += applied->change.steps.size();
-  Edited edited{batch.revision, std::move(applied->ids)};
+  Edited edited{batch.revision, std::move(applied->ids), std::move(write.areas)};
   batch.applied.push_back({&write, std::move(*applied), std::move(edited)});
 }
 
@@ -251,7 +247,7 @@ void Tin::fit_and_apply(Write& write) {
       write.outcome = edits.error();
       return;
     }
-    write.apply = [&](Terrain& terrain) { return terrain.apply(*edits, duplicates_); };
+    write.apply = [&](Terrain& terrain) { return apply(terrain, *edits, write); };
     Write* const one = &write;
     return carry_out_together({&one, 1});
   }
@@ -261,17 +257,17 @@ void Tin::fit_and_apply(Write& write) {
   const auto edits = to_lattice(write.first_vertices, (*fitted)->frame());
   if (!edits) return refuse(edits.error());
   const std::string empty = encode(**fitted, duplicates_, std::nullopt, revision_);
-  auto applied = (*fitted)->apply(*edits, duplicates_);
+  auto applied = apply(**fitted, *edits, write);
   if (!applied) return refuse(applied.error());
   if ((*fitted)->vertex_count() > max_vertices_) {
     return refuse(too_many_vertices());
   }
   if (applied->change.steps.empty()) {
-    write.outcome = Edited{revision_, std::move(applied->ids)};
+    write.outcome = Edited{revision_, std::move(applied->ids), std::move(write.areas)};
     return;
   }
   (*fitted)->amend(applied->change);
-  Edited edited{revision_ + 1, std::move(applied->ids)};
+  Edited edited{revision_ + 1, std::move(applied->ids), std::move(write.areas)};
   store::Entry entry = entry_of(write, applied->change, edited);
   entry.checkpoint = empty;
   // Before the commit: nothing may fail after it.

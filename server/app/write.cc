@@ -22,7 +22,7 @@ bool take(std::string_view& text, char end, std::uint64_t& number) {
 }  // namespace
 
 /// "revision;first+count,first+count," with runs of ids that ascend by one: a batch of new vertices is one
-/// run.
+/// run. Where edits of areas are among them, "|index:count,index:count," follows.
 std::string encode_edited(const Edited& edited) {
   std::string out = std::to_string(edited.revision) + ";";
   for (std::size_t i = 0; i < edited.ids.size();) {
@@ -32,6 +32,9 @@ std::string encode_edited(const Edited& edited) {
     out.append(std::to_string(end - i)).append(1, ',');
     i = end;
   }
+  if (!edited.areas.empty()) out += '|';
+  for (const auto& [index, count] : edited.areas)
+    out.append(std::to_string(index)).append(1, ':').append(std::to_string(count)).append(1, ',');
   return out;
 }
 
@@ -39,10 +42,16 @@ Result<Edited> decode_edited(std::string_view bytes) {
   const auto malformed = [] { return error(Code::kStorage, "An answer that was kept cannot be read."); };
   Edited edited;
   if (!take(bytes, ';', edited.revision)) return malformed();
-  while (!bytes.empty()) {
+  while (!bytes.empty() && bytes.front() != '|') {
     std::uint64_t first = 0, count = 0;
     if (!take(bytes, '+', first) || !take(bytes, ',', count)) return malformed();
     for (std::uint64_t i = 0; i < count; ++i) edited.ids.emplace_back(first + i);
+  }
+  if (!bytes.empty()) bytes.remove_prefix(1);
+  while (!bytes.empty()) {
+    std::uint64_t index = 0, count = 0;
+    if (!take(bytes, ':', index) || !take(bytes, ',', count)) return malformed();
+    edited.areas.emplace_back(index, count);
   }
   return edited;
 }

@@ -1,6 +1,7 @@
 // One write to a TIN on its way: what is to be done, under what terms, and what came of it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,7 +20,8 @@ namespace server::app {
 
 struct Edited {
   std::uint64_t revision = 0;
-  std::vector<VertexId> ids;  // one per edit
+  std::vector<VertexId> ids;  // one per edit; of an edit of an area as many as it removed
+  std::vector<AreaResult> areas = {};
   friend bool operator==(const Edited&, const Edited&) = default;
 };
 
@@ -35,6 +37,7 @@ struct Terms {
       {};  // the present revision must be one of these, if any are given
   store::RevisionInfo info = {};
   std::optional<RequestKey> key = std::nullopt;
+  std::size_t most_within = SIZE_MAX;  // vertices that edits of areas may remove
 };
 
 /// See WriteQueue. Exactly one of `apply`, `first_vertices`, `prepared` and `instead` is set.
@@ -45,8 +48,9 @@ struct Write {
   std::size_t weight = 1;  // steps, about
   bool alone = false;
 
-  /// Changes the terrain, or leaves it as it was and says why.
+  /// Changes the terrain, or leaves it as it was and says why. May fill `areas`.
   std::function<tin::base::Result<tin::terrain::Terrain::Applied>(tin::terrain::Terrain&)> apply;
+  std::vector<AreaResult> areas;
   /// Edits that may come to an open frame.
   std::span<const WorldEdit> first_vertices;
   /// A terrain that was made of that of revision `prepared_from` by `change`, to take its place.

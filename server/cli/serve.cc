@@ -67,6 +67,7 @@ http::ServerOptions http_options(const Config& config) {
   options.target_bytes = static_cast<std::size_t>(config.http.target_bytes);
   options.memory_body_limit = static_cast<std::uint64_t>(config.limits.body_bytes_memory);
   options.file_body_limit = static_cast<std::uint64_t>(config.limits.upload_bytes);
+  options.buffered_bytes = static_cast<std::uint64_t>(config.http.buffered_bytes);
   options.min_bytes_per_second = static_cast<std::uint64_t>(config.http.body_bytes_per_second);
   options.compress_from_bytes = static_cast<std::size_t>(config.http.compress_from_bytes);
   options.requests_per_connection = static_cast<int>(config.http.requests_per_connection);

@@ -10,6 +10,7 @@
 #include "server/api/processes/simplify.h"
 #include "server/app/import.h"
 #include "server/app/simplify.h"
+#include "server/app/threads.h"
 #include "server/cli/output_file.h"
 #include "server/cli/terminal.h"
 #include "tin/codec/checkpoint.h"
@@ -47,7 +48,7 @@ Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
   options.against = api::processes::against_of(*against);
   options.keep_flat = static_cast<std::size_t>(arguments.keep_flat);
   options.seed = arguments.seed;
-  options.threads = arguments.threads == 0 ? app::simplify_threads() : arguments.threads;
+  options.threads = arguments.threads == 0 ? app::engine_threads() : arguments.threads;
   app::ImportRequest request;
   request.simplify = std::move(options);
   request.max_seconds = arguments.max_seconds;

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <vector>
 
+#include "server/gdal/not_written.h"
+
 namespace server::gdal {
 namespace {
 
@@ -45,13 +47,13 @@ std::string header(const RasterSpec& spec) {
   return text + "NODATA_value " + value_text(spec, spec.nodata) + "\n";
 }
 
-Error not_written() {
-  return error(Code::kStorage, "The ASCII grid could not be written");
+Error not_written_to(const std::filesystem::path& out) {
+  return not_written("The ASCII grid could not be written", out);
 }
 
 std::optional<Error> write(const std::filesystem::path& out, const RasterSpec& spec, const RowSource& rows) {
   const File file(std::fopen(out.c_str(), "wb"));
-  if (!file) return not_written();
+  if (!file) return not_written_to(out);
   std::string text = header(spec);
   std::vector<double> values(static_cast<std::size_t>(spec.width));
   for (std::int64_t row = 0; row < spec.height; ++row) {
@@ -64,10 +66,10 @@ std::optional<Error> write(const std::filesystem::path& out, const RasterSpec& s
       text += number;
     }
     text += '\n';
-    if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) return not_written();
+    if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) return not_written_to(out);
     text.clear();
   }
-  if (std::fflush(file.get()) != 0) return not_written();
+  if (std::fflush(file.get()) != 0) return not_written_to(out);
   return std::nullopt;
 }
 

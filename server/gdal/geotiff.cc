@@ -15,6 +15,7 @@
 
 #include "server/gdal/crs_internal.h"
 #include "server/gdal/library.h"
+#include "server/gdal/not_written.h"
 
 namespace server::gdal {
 namespace {
@@ -153,7 +154,7 @@ std::optional<Error> write(const std::filesystem::path& out, const RasterSpec& s
   const std::int64_t tile_rows = tile_height(spec.width, single ? 4 : 8);
   Dataset dataset = create(out, spec, tile_rows);
   const auto failed = [&] {
-    return error(Code::kStorage, "The GeoTIFF could not be written" + complaints.aside(out.parent_path()));
+    return not_written("The GeoTIFF could not be written" + complaints.aside(out.parent_path()), out);
   };
   if (!dataset || !describe(*dataset, spec, crs)) return failed();
   GDALRasterBand& band = *dataset->GetRasterBand(1);
@@ -215,8 +216,7 @@ std::optional<Error> copy_as_cog(const std::filesystem::path& from, const std::f
   const bool made = copy != nullptr;
   copy.reset();
   if (made && !complaints.any()) return std::nullopt;
-  return error(Code::kStorage,
-               "The cloud-optimised GeoTIFF could not be written" + complaints.aside(out.parent_path()));
+  return not_written("The cloud-optimised GeoTIFF could not be written" + complaints.aside(out.parent_path()), out);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "proto/formats/frame_note.h"
 #include "server/gdal/crs_internal.h"
 #include "server/gdal/library.h"
+#include "server/gdal/not_written.h"
 
 namespace server::gdal {
 
@@ -82,7 +83,7 @@ struct VectorFile::Impl {
   std::unique_ptr<OGRTriangulatedSurface> patch;
 
   Error failed() const {
-    return error(Code::kStorage, "The file could not be written" + complaints.aside(out.parent_path()));
+    return not_written("The file could not be written" + complaints.aside(out.parent_path()), out);
   }
 
   Result<void> add(OGRFeature& feature) {

@@ -4,6 +4,8 @@
 #include <system_error>
 #include <utility>
 
+#include "server/gdal/not_written.h"
+
 namespace server::gdal {
 namespace {
 
@@ -45,7 +47,7 @@ Result<Workspace> Workspace::create(const fs::path& uploaded, const std::string&
   fs::create_hard_link(source, workspace.file_, problem);
   if (problem) fs::copy_file(source, workspace.file_, problem);
   if (problem)
-    return error(Code::kStorage, "The file could not be put where it is read: " + problem.message());
+    return not_written("The file could not be put where it is read: " + problem.message(), workspace.file_);
   return workspace;
 }
 

@@ -20,7 +20,8 @@ bool may_be_id(std::string_view id) {
 
 }  // namespace
 
-Exchange::Exchange(SessionContext& shared, const std::string& peer) : shared_(shared) {
+Exchange::Exchange(SessionContext& shared, const std::string& peer)
+    : shared_(shared), buffered_(shared.buffered, shared.options.buffered_bytes) {
   context_.request_id = shared_.id_prefix + std::to_string(++shared_.requests);
   access_.request_id = context_.request_id;
   access_.peer = peer;
@@ -36,6 +37,28 @@ void Exchange::forget_request_body() {
   if (!request.body_file.empty()) std::filesystem::remove(request.body_file, ignored);
   request.body_file.clear();
   request.body = std::string();
+  buffered_.resize(0);
+}
+
+Response Exchange::no_room() const {
+  return shared_.pages.status(503, "the requests and answers under way take all the memory that they may");
+}
+
+bool Exchange::hold_body() {
+  if (buffered_.resize(admission_.request.body.size())) return true;
+  forget_request_body();
+  admission_.answer = no_room();
+  return false;
+}
+
+/// The answer, or that there is no memory to keep it until the client has taken it. What has changed something is
+/// answered in any case: a refusal would not be true.
+Answer Exchange::held(Answer answer) {
+  const Route& route = *admission_.route;
+  const bool reads = route.need == Need::kRead || route.method == Method::kGet;
+  if (!reads) buffered_.force(answer.body.size());
+  if (!reads || buffered_.resize(answer.body.size())) return answer;
+  return reply(no_room());
 }
 
 void Exchange::admit(Head& head) {
@@ -46,7 +69,6 @@ void Exchange::admit(Head& head) {
     if (name == "x-request-id" && may_be_id(value)) context_.request_id = access_.request_id = value;
   }
   admission_ = http::admit(head, context_.request_id, shared_.router, shared_.pages, shared_.options);
-  admission_.request.aborted = &shared_.aborted;
   access_.path = admission_.request.path;
   access_.client = admission_.request.client;
   if (admission_.route != nullptr) access_.route = admission_.route->pattern;
@@ -58,14 +80,14 @@ void Exchange::admit(Head& head) {
 std::optional<Answer> Exchange::handle_quickly() {
   std::optional<Response> response = call_quick_handler(*admission_.route, admission_.request);
   if (!response) return std::nullopt;
-  return reply(*std::move(response));
+  return held(reply(*std::move(response)));
 }
 
 Answer Exchange::handle() {
   Response response = call_handler(*admission_.route, admission_.request, shared_.pages, shared_.observer);
   forget_request_body();
   try {
-    return reply(std::move(response));
+    return held(reply(std::move(response)));
   } catch (const std::exception& e) {
     if (shared_.observer.problem) {
       shared_.observer.problem(context_.request_id, std::string("the answer could not be made: ") + e.what());
@@ -80,6 +102,7 @@ Answer Exchange::reply(Response response) {
 }
 
 void Exchange::finish(const Answer& answer, bool whole) {
+  buffered_.resize(0);
   if (!shared_.observer.access) return;
   access_.status = answer.status;
   access_.cut = !whole;

@@ -7,6 +7,7 @@
 
 #include "server/http/admission.h"
 #include "server/http/answer.h"
+#include "server/http/buffered.h"
 #include "server/http/framing.h"
 #include "server/http/session.h"
 
@@ -34,19 +35,34 @@ class Exchange {
   /// Makes an answer without a handler.
   Answer reply(Response response);
 
+  /// Counts what there is of the request's body as held. False: there is no room, and the admission's answer
+  /// says so.
+  bool hold_body();
+
+  /// Whom the handler may ask whether somebody waits for it still.
+  void set_attention(std::shared_ptr<Attention> attention) {
+    admission_.request.attention = std::move(attention);
+  }
+
   /// Reports to the observer what has been sent.
   void finish(const Answer& answer, bool whole);
+
+  /// HTTP/1.0 has no 1xx.
+  bool knows_interim_answers() const { return context_.minor == 1; }
 
   Admission& admission() { return admission_; }
   Access& access() { return access_; }
 
  private:
   void forget_request_body();
+  Answer held(Answer answer);
+  Response no_room() const;
 
   SessionContext& shared_;
   Admission admission_;
   AnswerContext context_;
   Access access_;
+  Buffered buffered_;
   bool keep_alive_ = false;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };

@@ -8,12 +8,15 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "tin/base/progress.h"
 
 namespace server::http {
 
@@ -28,6 +31,46 @@ std::optional<Method> method_named(std::string_view name);
 /// Pairs of name and value, in the order in which they were sent.
 using NamedValues = std::vector<std::pair<std::string, std::string>>;
 
+/// Whether anybody still waits for an answer: not when the client has closed its side of the connection, or
+/// when the server will not wait any longer. Thread-safe.
+class Attention {
+ public:
+  bool lost() const { return lost_.load(std::memory_order_relaxed); }
+  void lose() {
+    lost_.store(true, std::memory_order_relaxed);
+    const std::lock_guard lock(mutex_);
+    if (work_ != nullptr) work_->cancel();
+  }
+
+  /// Work that is cancelled when nobody waits for it any more, for as long as this lives.
+  class Work {
+   public:
+    Work(std::shared_ptr<Attention> attention, tin::base::Progress& progress)
+        : attention_(std::move(attention)) {
+      if (attention_) attention_->watch(&progress);
+    }
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+    ~Work() {
+      if (attention_) attention_->watch(nullptr);
+    }
+
+   private:
+    const std::shared_ptr<Attention> attention_;
+  };
+
+ private:
+  void watch(tin::base::Progress* work) {
+    const std::lock_guard lock(mutex_);
+    work_ = work;
+    if (work_ != nullptr && lost()) work_->cancel();
+  }
+
+  std::atomic<bool> lost_{false};
+  std::mutex mutex_;
+  tin::base::Progress* work_ = nullptr;
+};
+
 /// A request that passed the limits, the routing and the check of its query parameters.
 struct Request {
   Method method = Method::kGet;  // kHead on a GET route: answer as for GET, the body is dropped
@@ -39,7 +82,7 @@ struct Request {
   std::filesystem::path body_file;  // when the route takes it as a file: gone after the handler returned
   std::string id;                   // the client's X-Request-Id if it is sound, else ours; also the answer's
   std::string client;               // who asks, as far as the gate knows; for the log
-  const std::atomic<bool>* aborted = nullptr;  // set when the server will not wait for the answer any more
+  std::shared_ptr<Attention> attention;  // of those who wait for the answer; null: they do
 
   /// The value of a query parameter, if it was sent.
   std::optional<std::string> query_value(std::string_view name) const;
@@ -51,7 +94,7 @@ struct Request {
   std::string_view path_parameter(std::string_view name) const;
 
   /// Whether the answer is not waited for any more: long handlers ask now and then, and give up.
-  bool is_aborted() const { return aborted != nullptr && aborted->load(std::memory_order_relaxed); }
+  bool is_aborted() const { return attention != nullptr && attention->lost(); }
 
   /// Hands the uploaded file to the caller, who removes it from now on.
   std::filesystem::path release_body_file();

@@ -31,6 +31,7 @@ struct ServerOptions {
   std::size_t target_bytes = 8 * 1024;
   std::uint64_t memory_body_limit = 32ULL << 20;  // for routes that state no limit of their own
   std::uint64_t file_body_limit = 2ULL << 30;
+  std::uint64_t buffered_bytes = 256ULL << 20;  // of bodies in memory and of answers, all together
   std::uint64_t min_bytes_per_second = 1024;  // of a body in either direction, after its first moments
   std::size_t compress_from_bytes = 1024;     // of an answer, for clients that accept it; 0: never
   int requests_per_connection = 1000;

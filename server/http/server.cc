@@ -2,6 +2,7 @@
 
 #include <boost/asio.hpp>
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <random>
@@ -137,8 +138,8 @@ class Server::Impl {
         router_(std::move(router)),
         pages_(std::move(pages)),
         observer_(std::move(observer)),
-        work_(asio::make_work_guard(io_)),
-        acceptor_(asio::make_strand(io_)),
+        loops_(static_cast<std::size_t>(std::max(options_.io_threads, 1))),
+        acceptor_(loops_.front().io),
         accept_pause_(acceptor_.get_executor()),
         workers_(static_cast<std::size_t>(std::max(options_.worker_threads, 1))),
         sessions_(options_.max_connections, options_.max_connections_per_address),
@@ -150,7 +151,7 @@ class Server::Impl {
     if (Result<void> bound = listen(); !bound) return bound.error();
     const std::uint16_t port = acceptor_.local_endpoint().port();
     asio::post(acceptor_.get_executor(), [this] { accept_next(); });
-    for (int i = 0; i < options_.io_threads; ++i) threads_.emplace_back([this] { io_.run(); });
+    for (Loop& loop : loops_) threads_.emplace_back([&loop] { loop.io.run(); });
     return port;
   }
 
@@ -172,7 +173,7 @@ class Server::Impl {
       sessions_.each([](Session& session) { session.abort(); });
       sessions_.wait_until_empty();
     }
-    work_.reset();
+    for (Loop& loop : loops_) loop.work.reset();
     for (std::thread& thread : threads_) thread.join();
     threads_.clear();
     workers_.join();
@@ -212,10 +213,11 @@ class Server::Impl {
   }
 
   void accept_next() {
-    acceptor_.async_accept(io_, [this](error_code ec, tcp::socket socket) {
+    asio::io_context& io = loops_[accepted_count_ % loops_.size()].io;
+    acceptor_.async_accept(io, [this, &io](error_code ec, tcp::socket socket) {
       if (!acceptor_.is_open()) return;
       if (!ec) {
-        admit(std::move(socket));
+        admit(io, std::move(socket));
         accept_next();
         return;
       }
@@ -226,7 +228,7 @@ class Server::Impl {
     });
   }
 
-  void admit(tcp::socket socket) {
+  void admit(asio::io_context& io, tcp::socket socket) {
     error_code ec;
     const tcp::endpoint endpoint = socket.remote_endpoint(ec);
     if (ec) return;  // gone already
@@ -239,18 +241,23 @@ class Server::Impl {
     accepted.descriptor = socket.release(ec);
     const std::uint64_t number = ++accepted_count_;
     auto on_end = [this, place, number, peer = accepted.peer] { sessions_.leave(peer, place, number); };
-    auto session = make_session(io_, context_, std::move(accepted), std::move(on_end));
+    auto session = make_session(io, context_, std::move(accepted), std::move(on_end));
     sessions_.keep(number, session);
     session->start();
     if (context_.draining) session->drain();  // stop() may have missed it
   }
 
+  /// The connections of one thread.
+  struct Loop {
+    asio::io_context io{1};
+    asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(io);
+  };
+
   ServerOptions options_;
   Router router_;
   ErrorPages pages_;
   Observer observer_;
-  asio::io_context io_;
-  asio::executor_work_guard<asio::io_context::executor_type> work_;
+  std::deque<Loop> loops_;
   tcp::acceptor acceptor_;
   asio::steady_timer accept_pause_;
   asio::thread_pool workers_;
@@ -258,7 +265,7 @@ class Server::Impl {
   SessionContext context_;
   std::mutex stopping_;
   std::vector<std::thread> threads_;
-  std::uint64_t accepted_count_ = 0;  // touched by the acceptor's strand only
+  std::uint64_t accepted_count_ = 0;  // touched by the acceptor's thread only
 };
 
 Server::Server(ServerOptions options, Router router, ErrorPages pages, Observer observer)

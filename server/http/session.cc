@@ -1,9 +1,11 @@
-// A coroutine per connection, on a strand of its own: the members of a session are touched by that strand
-// only, except inside `on_workers`, when the coroutine waits. Handlers and body sources run there.
+// A coroutine per connection, which stays on the thread of its io_context: the members of a session are
+// touched by that thread only, except inside `on_workers`, when the coroutine waits. Handlers and body
+// sources run there.
 #include "server/http/session.h"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -25,15 +27,24 @@ namespace {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
-using asio::awaitable;
 using asio::ip::tcp;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
+// One type and no other, so that nothing is looked up when an operation ends.
+using Executor = asio::io_context::executor_type;
+template <class T>
+using awaitable = asio::awaitable<T, Executor>;
+using Socket = asio::basic_stream_socket<tcp, Executor>;
+using Timer = asio::basic_waitable_timer<Clock, asio::wait_traits<Clock>, Executor>;
+
+constexpr asio::use_awaitable_t<Executor> kAwaited;
 
 constexpr int kUnsentBytes = 128 * 1024;
 constexpr std::size_t kHeadReadBytes = 4 * 1024;
 constexpr std::size_t kBodyReadBytes = 64 * 1024;
 constexpr std::uint64_t kLingerBytes = 16ULL << 20;
+constexpr std::chrono::milliseconds kPatienceWithSilence{200};
+constexpr std::chrono::milliseconds kPatienceWithReset{100};
 constexpr std::chrono::milliseconds kLingerTime{5'000};
 constexpr std::chrono::milliseconds kLingerTimeDraining{500};
 
@@ -52,7 +63,7 @@ awaitable<void> on_workers(asio::thread_pool& workers, Job& job) {
       asio::post(executor, std::move(resume));
     });
   };
-  co_await asio::async_initiate<const asio::use_awaitable_t<>&, void()>(initiate, asio::use_awaitable);
+  co_await asio::async_initiate<const asio::use_awaitable_t<Executor>&, void()>(initiate, kAwaited);
   if (failure) std::rethrow_exception(failure);
 }
 
@@ -64,14 +75,16 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
         options_(context.options),
         accepted_(std::move(accepted)),
         on_end_(std::move(on_end)),
-        executor_(asio::make_strand(io)),
+        executor_(io.get_executor()),
         socket_(executor_),
         deadline_(executor_),
         pause_(executor_),
+        watch_(executor_),
         in_(options_.header_bytes + 2 * kBodyReadBytes) {
     error_code ignored;
     socket_.assign(accepted_.ipv6 ? tcp::v6() : tcp::v4(), accepted_.descriptor, ignored);
     socket_.set_option(tcp::no_delay(true), ignored);
+    socket_.non_blocking(true, ignored);
     // What a slow client does not take stays unmade: else the kernel would have megabytes made for each of them,
     // at the cost of all others. What is on its way does not count, so that far and fast clients lose nothing.
     ::setsockopt(accepted_.descriptor, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof kUnsentBytes);
@@ -93,12 +106,13 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     asio::post(executor_, [self = shared_from_this()] {
       self->close();
       self->pause_.cancel();
+      if (self->attention_) self->attention_->lose();
     });
   }
 
  private:
   enum class Arrival { kHead, kGone, kTimeout, kTooLong };
-  enum class Transfer { kWhole, kGone, kTimeout, kTooLarge, kBroken };
+  enum class Transfer { kWhole, kGone, kTimeout, kTooLarge, kBroken, kNoRoom };
 
   // --- The connection ---------------------------------------------------------------------------------
 
@@ -177,12 +191,59 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
   awaitable<bool> handle(Exchange& exchange) {
     std::optional<Answer> answer = exchange.handle_quickly();
     if (answer) co_return co_await deliver(exchange, *answer);
+    attention_ = std::make_shared<Attention>();
+    exchange.set_attention(attention_);
     auto job = [&] {
       if (!context_.aborted) answer = exchange.handle();
     };
+    watch_client(exchange.knows_interim_answers());
     co_await on_workers(context_.workers, job);
+    error_code ignored;
+    socket_.cancel(ignored);  // the watch
+    watch_.cancel();
+    attention_.reset();
     if (!answer) co_return false;
     co_return co_await deliver(exchange, *answer);
+  }
+
+  /// Notes when the client goes while a handler runs. A client that sends the next request already is not
+  /// watched further.
+  void watch_client(bool knows_interim_answers) {
+    socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this(), attention = attention_,
+                                                knows_interim_answers](error_code ec) {
+      if (ec) return;
+      const Peer peer = self->peer();
+      const bool asks = peer == Peer::kSilent && knows_interim_answers;
+      if (asks) return self->ask_whether_there(kPatienceWithSilence, attention);
+      if (peer != Peer::kThere) attention->lose();
+    });
+  }
+
+  /// A client that sends no more may be gone, or wait for its answer. An interim answer tells: nobody takes
+  /// it when nobody is there, and the connection is reset. Asked once, when the handler takes its time.
+  void ask_whether_there(Clock::duration after, std::shared_ptr<Attention> attention, bool asked = false) {
+    watch_.expires_after(after);
+    watch_.async_wait([self = shared_from_this(), attention = std::move(attention), asked](error_code ec) {
+      if (ec || self->attention_ != attention) return;
+      if (self->peer() == Peer::kGone) return attention->lose();
+      if (asked) return;
+      constexpr std::string_view kInterim = "HTTP/1.1 102 Processing\r\n\r\n";
+      error_code failed;
+      self->socket_.write_some(asio::buffer(kInterim), failed);
+      if (failed) return attention->lose();
+      self->ask_whether_there(kPatienceWithReset, attention, true);
+    });
+  }
+
+  enum class Peer { kThere, kSilent, kGone };
+  Peer peer() {
+    // A reset after the end of what came in shows here only.
+    pollfd state{socket_.native_handle(), POLLIN, 0};
+    if (::poll(&state, 1, 0) < 0 || (state.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return Peer::kGone;
+    char next = 0;
+    const ssize_t got = ::recv(socket_.native_handle(), &next, 1, MSG_PEEK | MSG_DONTWAIT);
+    if (got == 0) return Peer::kSilent;
+    return got > 0 || errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? Peer::kThere : Peer::kGone;
   }
 
   /// Answers without a handler.
@@ -217,7 +278,7 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     arm(time);
     error_code ec;
     const std::size_t got =
-        co_await socket_.async_read_some(in_.prepare(at_most), asio::redirect_error(asio::use_awaitable, ec));
+        co_await socket_.async_read_some(in_.prepare(at_most), asio::redirect_error(kAwaited, ec));
     disarm();
     in_.commit(got);
     co_return got;
@@ -271,16 +332,20 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     }
     Transfer transfer = Transfer::kBroken;
     std::string problem;
+    auto code = tin::base::Code::kStorage;
     try {
-      transfer = co_await transfer_body(admission, parser, patience);
+      transfer = co_await transfer_body(exchange, parser, patience);
     } catch (const std::system_error& e) {
       problem = e.what();
+      if (e.code() == std::errc::no_space_on_device || e.code().value() == EDQUOT)
+        code = tin::base::Code::kNoSpace;
     }
     const ErrorPages& pages = context_.pages;
     if (!problem.empty()) {
       report(admission.request.id, "upload: " + problem);
-      admission.answer =
-          pages.error(tin::base::error(tin::base::Code::kStorage, "the upload could not be stored"));
+      admission.answer = pages.error(tin::base::error(
+          code, code == tin::base::Code::kNoSpace ? "there is no room on the disk for the upload"
+                                                  : "the upload could not be stored"));
     } else if (transfer == Transfer::kTimeout) {
       admission.answer = pages.status(408, "the request body came too slowly");
     } else if (transfer == Transfer::kTooLarge) {
@@ -291,7 +356,8 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     co_return transfer != Transfer::kGone;
   }
 
-  awaitable<Transfer> transfer_body(Admission& admission, BodyParser& parser, Patience& patience) {
+  awaitable<Transfer> transfer_body(Exchange& exchange, BodyParser& parser, Patience& patience) {
+    Admission& admission = exchange.admission();
     parser.set_limits(admission.body_limit, options_.header_bytes);
     std::unique_ptr<UploadFile> upload;
     std::vector<char> block(kBodyReadBytes);
@@ -304,7 +370,10 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
       step = parser.parse(buffered(), block);
       in_.consume(step.used);
       if (step.filled > 0 && admission.to_file) co_await on_workers(context_.workers, store);
-      if (step.filled > 0 && !admission.to_file) admission.request.body.append(block.data(), step.filled);
+      if (step.filled > 0 && !admission.to_file) {
+        admission.request.body.append(block.data(), step.filled);
+        if (!exchange.hold_body()) co_return Transfer::kNoRoom;
+      }
       if (step.state == BodyParser::State::kTooLarge) co_return Transfer::kTooLarge;
       if (step.state == BodyParser::State::kBroken) co_return Transfer::kBroken;
       if (step.state != BodyParser::State::kNeedMore) continue;
@@ -381,13 +450,17 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     while (asio::buffer_size(rest) > 0) {
       const Clock::duration time = patience.left();
       if (time <= Clock::duration::zero()) co_return false;
-      const Clock::time_point before = Clock::now();
-      arm(time);
       error_code ec;
-      const std::size_t sent =
-          co_await socket_.async_write_some(rest, asio::redirect_error(asio::use_awaitable, ec));
-      disarm();
-      patience.record(sent, Clock::now() - before);
+      // Most answers fit the socket's buffer: they need no clock, and no turn of the reactor.
+      std::size_t sent = socket_.write_some(rest, ec);
+      if (ec == asio::error::would_block) {
+        const Clock::time_point before = Clock::now();
+        arm(time);
+        sent = co_await socket_.async_write_some(rest, asio::redirect_error(kAwaited, ec));
+        disarm();
+        patience.record(0, Clock::now() - before);
+      }
+      patience.record(sent, Clock::duration::zero());
       access.bytes_sent += sent;
       rest.consume(sent);
       if (ec) co_return false;
@@ -399,7 +472,7 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
     error_code ignored;
     pause_.expires_after(options_.poll_interval);
     if (context_.draining) co_return;
-    co_await pause_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    co_await pause_.async_wait(asio::redirect_error(kAwaited, ignored));
   }
 
   /// Ends the sending side and reads on for a while: closing on unread bytes would reset the connection, and
@@ -440,13 +513,15 @@ class ClientSession final : public Session, public std::enable_shared_from_this<
   const ServerOptions& options_;
   const Accepted accepted_;
   const std::function<void()> on_end_;
-  asio::any_io_executor executor_;
-  tcp::socket socket_;
-  asio::steady_timer deadline_;
-  asio::steady_timer pause_;
+  const Executor executor_;
+  Socket socket_;
+  Timer deadline_;
+  Timer pause_;
+  Timer watch_;
   beast::flat_buffer in_;   // bytes received and not used yet
   std::uint64_t turn_ = 0;  // which arm() a deadline belongs to
   bool timed_out_ = false;
+  std::shared_ptr<Attention> attention_;  // while a handler runs
   bool idle_ = false;  // waits for a request of which nothing has come
 };
 

@@ -29,6 +29,7 @@ struct SessionContext {
   std::atomic<std::uint64_t> requests{0};
   std::atomic<bool> draining{false};  // no new requests
   std::atomic<bool> aborted{false};   // no new calls of handlers and sources either
+  std::atomic<std::uint64_t> buffered{0};  // bytes of bodies and answers that are held; see Buffered
 };
 
 /// A connection just accepted.
@@ -55,7 +56,8 @@ class Session {
   virtual void abort() = 0;
 };
 
-/// Makes a session; it keeps itself alive from start() until `on_end`, its last call.
+/// Makes a session on an io_context that one thread runs; it keeps itself alive from start() until `on_end`,
+/// its last call.
 std::shared_ptr<Session> make_session(boost::asio::io_context& io, SessionContext& context, Accepted accepted,
                                       std::function<void()> on_end);
 

@@ -1,5 +1,6 @@
 #include "server/store/committer.h"
 
+#include <chrono>
 #include <exception>
 #include <new>
 #include <utility>
@@ -44,8 +45,10 @@ Result<void> Committer::commit(const Work& work) {
   std::unique_lock lock(mutex_);
   if (failed_) return *failed_;
   waiting_.push_back(&self);
+  ++counts_.waiting;
   given_.notify_one();
   self.changed.wait(lock, [&] { return self.done; });
+  --counts_.waiting;
   if (self.durable || !self.result.ok()) return std::move(self.result);
   return tin::base::error(Code::kStorage, "the write was not committed");
 }
@@ -55,14 +58,9 @@ Result<void> Committer::writable() const {
   return failed_ ? Result<void>(*failed_) : Result<void>();
 }
 
-std::uint64_t Committer::commits() const {
+Store::Counts Committer::counts() const {
   const std::lock_guard guard(mutex_);
-  return commits_;
-}
-
-std::uint64_t Committer::writes() const {
-  const std::lock_guard guard(mutex_);
-  return writes_;
+  return counts_;
 }
 
 void Committer::run() {
@@ -76,17 +74,20 @@ void Committer::run() {
     group.assign(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(size));
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(size));
     lock.unlock();
+    const auto begin = std::chrono::steady_clock::now();
     try {
       commit_group(group);
     } catch (const std::bad_alloc&) {  // while saying what went wrong; nobody is acknowledged by that
     }
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     lock.lock();
+    counts_.seconds += took.count();
     if (database_.disk_failed() && !failed_) {
       failed_ = tin::base::error(
           Code::kStorage, "the disk failed under a write: nothing is written until a restart, reads go on");
     }
     for (Waiting* one : group) {
-      writes_ += one->durable && one->result.ok() ? 1 : 0;
+      counts_.writes += one->durable && one->result.ok() ? 1 : 0;
       one->done = true;
       one->changed.notify_one();
     }
@@ -133,7 +134,7 @@ Result<void> Committer::try_group(const std::vector<Waiting*>& group) {
     if (!committed.ok()) return committed;
     for (Waiting* one : group) one->durable = true;
     const std::lock_guard guard(mutex_);
-    ++commits_;
+    ++counts_.commits;
     return {};
   } catch (const std::bad_alloc&) {
     return tin::base::error(Code::kStorage, "there is not enough memory to write");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/store/sqlite_internal.h"
+#include "server/store/store.h"
 #include "tin/base/result.h"
 
 namespace server::store {
@@ -31,8 +32,7 @@ class Committer {
 
   /// An error once the disk failed: nothing is written any more.
   tin::base::Result<void> writable() const;
-  std::uint64_t commits() const;
-  std::uint64_t writes() const;
+  Store::Counts counts() const;
 
  private:
   struct Waiting;  // a caller, on its own stack
@@ -49,8 +49,7 @@ class Committer {
   std::vector<Waiting*> waiting_;
   bool ending_ = false;
   std::optional<tin::base::Error> failed_;
-  std::uint64_t commits_ = 0;
-  std::uint64_t writes_ = 0;
+  Store::Counts counts_;
   std::thread thread_;  // last: it uses the rest
 };
 

@@ -16,6 +16,11 @@ int primary(int code) {
   return code & 0xff;
 }
 
+/// Also when the index of the log, which is no data, cannot grow.
+bool says_full(int code) {
+  return primary(code) == SQLITE_FULL || code == SQLITE_IOERR_SHMSIZE;
+}
+
 }  // namespace
 
 Database::~Database() {
@@ -56,13 +61,13 @@ Result<std::int64_t> Database::number(const char* sql) {
 tin::base::Error Database::error() const {
   const int code = sqlite3_extended_errcode(handle_);
   const std::string detail = std::string(sqlite3_errmsg(handle_)) + " (SQLite " + std::to_string(code) + ")";
-  if (primary(code) == SQLITE_FULL)
+  if (says_full(code))
     return tin::base::error(Code::kNoSpace, std::string(kDiskFull) + ": " + detail);
   return tin::base::error(Code::kStorage, "the store failed: " + detail);
 }
 
 bool Database::succeeded(int code) {
-  if (primary(code) == SQLITE_IOERR) disk_failed_ = true;
+  if (primary(code) == SQLITE_IOERR && !says_full(code)) disk_failed_ = true;
   return code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE;
 }
 

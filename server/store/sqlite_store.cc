@@ -114,7 +114,7 @@ Result<void> SqliteStore::writable() const {
 }
 
 Store::Counts SqliteStore::counts() const {
-  return committer_ ? Counts{committer_->commits(), committer_->writes()} : Counts{};
+  return committer_ ? committer_->counts() : Counts{};
 }
 
 Result<void> SqliteStore::limit_size(std::int64_t bytes) {

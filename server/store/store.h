@@ -166,10 +166,13 @@ class Store {
 
   /// An error once the disk failed under a write: reads go on, writes need a restart.
   virtual tin::base::Result<void> writable() const = 0;
-  /// Commits that were made so far, and the writes that they held.
+  /// Commits that were made so far, the writes that they held, and how long they took, syncs included; and
+  /// how many writes wait now for a commit or for its end.
   struct Counts {
     std::uint64_t commits = 0;
     std::uint64_t writes = 0;
+    double seconds = 0;
+    std::uint64_t waiting = 0;
   };
   virtual Counts counts() const = 0;
 };

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "proto/json_write.h"
+#include "proto/tile_documents.h"
 #include "server/gdal/crs.h"
 #include "server/tiles/picture.h"
 #include "server/tiles/terrain_tile.h"
@@ -81,11 +82,36 @@ std::optional<tin::terrain::Box> lattice_area(const Terrain& terrain, bool geogr
                            {lattice(std::ceil(frame.x.lattice(*max_x))), lattice(std::ceil(frame.y.lattice(*max_y)))}};
 }
 
-/// Extension 4: what Cesium may read, and how far the tile may lie from the terrain.
-std::string metadata_of(const TerrainTile& tile) {
+/// Ranges of tiles below this one, a list for each of the levels down to the next that has such lists.
+void write_available(proto::JsonWriter& json, const Tileset& tiles, const TileId& id) {
+  json.key("available").begin_array();
+  for (int z = id.z + 1; z <= id.z + proto::kMetadataLevels && z < tiles.levels; ++z) {
+    const int down = z - id.z;
+    const auto [x0, y0, x1, y1] = tiles.available(z);
+    const std::uint32_t first_x = id.x << down, first_y = id.y << down,
+                        width = (std::uint32_t{1} << down) - 1;
+    const std::uint32_t west = std::max(x0, first_x), east = std::min(x1, first_x + width);
+    const std::uint32_t south = std::max(y0, first_y), north = std::min(y1, first_y + width);
+    json.begin_array();
+    if (west <= east && south <= north) {
+      json.begin_object().key("startX").integer(west).key("startY").integer(south);
+      json.key("endX").integer(east).key("endY").integer(north).end_object();
+    }
+    json.end_array();
+  }
+  json.end_array();
+}
+
+bool lists_available(const TileId& id) {
+  return id.z % proto::kMetadataLevels == 0;
+}
+
+/// Extension 4: how far the tile may lie from the terrain, and in every tenth level which tiles lie below it.
+std::string metadata_of(const TerrainTile& tile, const Tileset& tiles, const TileId& id) {
   proto::JsonWriter json;
   json.begin_object();
   if (tile.error_m >= 0) json.key("geometricerror").number(tile.error_m);
+  if (lists_available(id)) write_available(json, tiles, id);
   json.end_object();
   return json.take();
 }
@@ -95,7 +121,7 @@ Result<std::string> make(const Terrain& terrain, TileKind kind, const TileId& id
     const auto tile = make_terrain_tile(terrain, *tiles, id);
     if (!tile) return tile.error();
     return gzipped(proto::formats::encode_quantized_mesh(
-        tile->mesh, {kind == TileKind::kTerrainWithNormals, tile->error_m >= 0 ? metadata_of(*tile) : ""}));
+        tile->mesh, {kind == TileKind::kTerrainWithNormals, metadata_of(*tile, *tiles, id)}));
   }
   if (kind == TileKind::kTerrarium) return picture_tile(terrain, PictureKind::kTerrarium, id);
   return picture_tile(terrain, kind == TileKind::kMapbox ? PictureKind::kMapbox : PictureKind::kHillshade, id);
@@ -165,6 +191,7 @@ std::shared_ptr<const CachedTile> TileCache::find(const app::Tin& tin, std::uint
   if (entry.revision != revision) {
     if (!entry.area || tin.changed_areas().may_differ(entry.revision, revision, *entry.area, entry.lowest)) return nullptr;
     if (tiles && (tiles->heights != entry.heights || tiles->levels != entry.levels)) return nullptr;
+    if (tiles && entry.extent && tiles->extent != *entry.extent) return nullptr;
     entry.revision = std::max(entry.revision, revision);
   }
   ++statistics_.served;
@@ -214,11 +241,13 @@ Result<std::shared_ptr<const CachedTile>> TileCache::get(const app::Tin& tin, Ti
   if (!bytes) return bytes.error();
   auto tile = std::make_shared<CachedTile>(CachedTile{std::move(*bytes), ""});
   tile->etag = tag_of(tile->bytes);
-  Entry entry{key, tile, version.revision, lattice_area(*version.terrain, is_terrain(kind), id), {}, 0, false};
+  Entry entry{key,   tile, version.revision, lattice_area(*version.terrain, is_terrain(kind), id), {}, 0,
+              false, {}};
   if (tiles) {
     entry.heights = tiles->heights;
     entry.levels = tiles->levels;
     entry.lowest = tiles->is_lowest(id);
+    if (lists_available(id)) entry.extent = tiles->extent;
   }
   keep(std::move(entry));
   return std::shared_ptr<const CachedTile>(std::move(tile));

@@ -49,6 +49,7 @@ class TileCache {
     HeightLattice heights;
     int levels = 0;
     bool lowest = false;
+    std::optional<proto::formats::TileRectangle> extent;  // of the terrain, where the tile says which are below it
   };
   struct KnownTileset {
     std::string key;

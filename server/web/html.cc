@@ -1,6 +1,10 @@
 #include "server/web/html.h"
 
+#include "proto/markup.h"
+
 namespace server::web {
+
+using proto::escaped_markup;
 namespace {
 
 constexpr std::string_view kStyle =
@@ -13,7 +17,8 @@ void write_steps(std::string& out, std::string_view path) {
   out += "<nav><a href=\"/\">Tinsmith</a>";
   for (std::size_t at = 1; at < path.size();) {
     const std::size_t end = std::min(path.find('/', at), path.size());
-    out += " / <a href=\"" + escaped(path.substr(0, end)) + "\">" + escaped(path.substr(at, end - at)) + "</a>";
+    out += " / <a href=\"" + escaped_markup(path.substr(0, end)) + "\">" +
+           escaped_markup(path.substr(at, end - at)) + "</a>";
     at = end + 1;
   }
   out += "</nav>\n";
@@ -22,50 +27,25 @@ void write_steps(std::string& out, std::string_view path) {
 void write_row(std::string& out, const std::vector<std::string>& cells, std::string_view tag) {
   out += "<tr>";
   for (const std::string& cell : cells) {
-    out.append("<").append(tag).append(">").append(escaped(cell)).append("</").append(tag).append(">");
+    out.append("<").append(tag).append(">").append(escaped_markup(cell)).append("</").append(tag).append(">");
   }
   out += "</tr>\n";
 }
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string render(const Page& page) {
   std::string out = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
-  out += "<meta name=\"viewport\" content=\"width=device-width\"><title>" + escaped(page.title) + "</title><style>";
+  out += "<meta name=\"viewport\" content=\"width=device-width\"><title>" + escaped_markup(page.title) +
+         "</title><style>";
   out.append(kStyle).append("</style></head><body>\n");
   write_steps(out, page.path);
-  out += "<h1>" + escaped(page.title) + "</h1>\n";
-  if (!page.description.empty()) out += "<p>" + escaped(page.description) + "</p>\n";
+  out += "<h1>" + escaped_markup(page.title) + "</h1>\n";
+  if (!page.description.empty()) out += "<p>" + escaped_markup(page.description) + "</p>\n";
   if (!page.facts.empty()) {
     out += "<table>\n";
     for (const auto& [name, value] : page.facts) {
-      out += "<tr><th>" + escaped(name) + "</th><td>" + escaped(value) + "</td></tr>\n";
+      out += "<tr><th>" + escaped_markup(name) + "</th><td>" + escaped_markup(value) + "</td></tr>\n";
     }
     out += "</table>\n";
   }
@@ -77,8 +57,8 @@ std::string render(const Page& page) {
   }
   out += "<h2>Links</h2>\n<ul>\n";
   for (const PageLink& link : page.links) {
-    out += "<li><a href=\"" + escaped(link.href) + "\">" + escaped(link.title) + "</a> <small>" + escaped(link.type) +
-           "</small></li>\n";
+    out += "<li><a href=\"" + escaped_markup(link.href) + "\">" + escaped_markup(link.title) +
+           "</a> <small>" + escaped_markup(link.type) + "</small></li>\n";
   }
   out += "</ul>\n</body></html>\n";
   return out;

@@ -25,7 +25,4 @@ struct Page {
 /// The page as UTF-8 HTML. All texts are escaped.
 std::string render(const Page& page);
 
-/// With &, <, >, " and ' as entities.
-std::string escaped(std::string_view text);
-
 }  // namespace server::web

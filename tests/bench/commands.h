@@ -13,5 +13,6 @@ int run_star(std::span<const std::string> arguments);
 int run_simplify(std::span<const std::string> arguments);
 int run_raster(std::span<const std::string> arguments);
 int run_surface(std::span<const std::string> arguments);
+int run_snapshot(std::span<const std::string> arguments);
 
 }  // namespace bench

@@ -13,10 +13,10 @@ int main(int argc, char** argv) {
     const char* name;
     int (*run)(std::span<const std::string>);
   } kCommands[] = {
-      {"paper", bench::run_paper},
-      {"star", bench::run_star},     {"build", bench::run_build},   {"insert", bench::run_insert},
-      {"locate", bench::run_locate}, {"remove", bench::run_remove}, {"simplify", bench::run_simplify},
-      {"raster", bench::run_raster}, {"surface", bench::run_surface},
+      {"paper", bench::run_paper},       {"star", bench::run_star},     {"build", bench::run_build},
+      {"insert", bench::run_insert},     {"locate", bench::run_locate}, {"remove", bench::run_remove},
+      {"simplify", bench::run_simplify}, {"raster", bench::run_raster}, {"surface", bench::run_surface},
+      {"snapshot", bench::run_snapshot},
   };
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {

@@ -23,6 +23,7 @@ class AnswersTest : public testing::Test {
       : server_([](server::Config& config) {
           config.limits.body_bytes_memory = 2048;
           config.limits.export_pixels = 1000;
+          config.limits.positions_per_request = 5;
           config.limits.polygon_positions = 5;
           config.limits.contour_levels = 20;
           config.limits.answer_positions = 6;
@@ -246,6 +247,30 @@ class AnswersTest : public testing::Test {
             {{"GET", path + "/surface/coverage?scale-size=x"}, 400},
             {{"GET", "/tins/local/collections/surface/coverage"}, 404},
             {{"GET", path + "/surface/coverage?scale-size=x(900),y(900)"}, 413},
+            {{"GET", path + "/surface/position?coords=POINT(-81%2040.65)"}, 200},
+            {{"GET", path + "/surface/position?coords=POINT"}, 400},
+            {{"GET", "/tins/local/collections/surface/position?coords=POINT(1%201)"}, 404},
+            {{"GET", path + "/surface/position?coords=MULTIPOINT(1%201,1%201,1%201,1%201,1%201,1%201)"}, 413},
+            {{"GET", path + "/surface/trajectory?coords=LINESTRING(-81%2040.65,-80.999%2040.651)"}, 200},
+            {{"GET", path + "/surface/trajectory"}, 400},
+            {{"GET", "/tins/local/collections/surface/trajectory"}, 404},
+            {{"GET",
+              "/tins/grid/collections/surface/"
+              "trajectory?coords=LINESTRING(0.5%200.5,4.5%203.4)&crs=EPSG:32617"},
+             413},
+            {{"GET", path + "/surface/trajectory?coords=LINESTRING(-81%2040.65,99%2040.651)"}, 422},
+            {{"GET",
+              path + "/surface/area?coords=POLYGON((-81%2040.65,-80.99%2040.65,-80.99%2040.66,-81%2040.65))"},
+             200},
+            {{"GET", path + "/surface/area?coords=POLYGON((1%201,2%201,2%202,1%201))"}, 204},
+            {{"GET", path + "/surface/area"}, 400},
+            {{"GET", "/tins/local/collections/surface/area"}, 404},
+            {{"GET", path + "/surface/area?coords=POLYGON((1%201,2%201,2%202,1%202,0%202,1%201))"}, 413},
+            {{"GET", path + "/surface/cube?bbox=-81,40.65,-80.99,40.66"}, 200},
+            {{"GET", path + "/surface/cube?bbox=1,1,2,2"}, 204},
+            {{"GET", path + "/surface/cube?bbox=1"}, 400},
+            {{"GET", "/tins/local/collections/surface/cube?bbox=1,1,2,2"}, 404},
+            {{"GET", path + "/surface/cube?bbox=-81,40.65,-80.99,40.66&resolution-x=4&resolution-y=2"}, 413},
             {{"GET", path + "/surface/coverage/domainset"}, 200},
             {{"GET", path + "/surface/coverage/domainset?a=1"}, 400},
             {{"GET", "/tins/local/collections/surface/coverage/domainset"}, 404},

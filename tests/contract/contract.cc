@@ -92,17 +92,20 @@ void check_problem(const RawAnswer& answer, std::vector<std::string>& wrong) {
   if (later && answer.header("retry-after").empty()) wrong.push_back("no Retry-After");
 }
 
-void check_documented_fields(const Json& response, const RawAnswer& answer, std::vector<std::string>& wrong) {
+void check_documented_fields(const Json& response, const RawAnswer& answer, bool preferred,
+                             std::vector<std::string>& wrong) {
   const Json fields = response.value("headers", Json::object());
   const Json body = Json::parse(answer.body, nullptr, false);
   const bool is_job = body.is_object() && body.contains("jobID");
   for (const auto& [name, field] : fields.items()) {
-    if (name == "Preference-Applied" ? !is_job : (name == "ETag" && is_job)) continue;
+    if (name == "Preference-Applied" ? !is_job || !preferred : (name == "ETag" && is_job)) continue;
     if (name == "Content-Crs") continue;  // a TIN may have no CRS
     std::string lower = name;
     for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (answer.header(lower).empty()) wrong.push_back("no " + name);
   }
+  if (!preferred && !answer.header("preference-applied").empty())
+    wrong.push_back("a preference applied that nobody stated");
   const std::string tag = answer.header("etag");
   if (tag.empty()) return;
   if (!fields.contains("ETag")) wrong.push_back("an ETag that is not documented");
@@ -135,7 +138,8 @@ std::vector<std::string> breaches(const Ask& ask, const RawAnswer& answer) {
   const Json& responses = operation_node(operation)->at("responses");
   const auto listed = responses.find(std::to_string(answer.status));
   if (listed != responses.end() && answer.status < 400)
-    check_documented_fields(resolved(*listed), answer, wrong);
+    check_documented_fields(resolved(*listed), answer, ask.fields.find("respond-async") != std::string::npos,
+                            wrong);
   const std::string type = answer.header("content-type");
   const std::string plain = type.starts_with("text/html") ? "text/html" : type;
   if (plain.find("json") == std::string::npos && !(plain.empty() && answer.body.empty())) {

@@ -1,6 +1,9 @@
 // Uploads of points and meshes over HTTP: their parameters, and what is refused.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "tests/contract/contract.h"
 #include "tests/contract/test_server.h"
 #include "tests/proto/formats/las_file.h"
@@ -61,6 +64,29 @@ TEST_F(ImportsTest, ClassesThatAreNoneChangeNothing) {
   EXPECT_NE(declined.body.find("LAZ"), std::string::npos);
   EXPECT_EQ(server_.state(), before);
   EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
+}
+
+/// Nobody waits for it any more, so nothing comes of it.
+TEST_F(ImportsTest, AnUploadWhoseClientLeavesIsGivenUp) {
+  const std::string before = server_.state(), grid = ascii_grid(1400, 1400);
+  const auto uploads = [&](int count) {  // soon
+    const std::string line = "tinsmith_requests_in_work{kind=\"upload\"} " + std::to_string(count) + "\n";
+    for (int i = 0; i < 20'000; ++i) {
+      if (server_.get("/metrics").body.find(line) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  };
+  {
+    support::RawClient client(server_.port());
+    ASSERT_TRUE(
+        client.send("POST /tins?id=t HTTP/1.1\r\nHost: t\r\nContent-Type: text/plain\r\nContent-Length: " +
+                    std::to_string(grid.size()) + "\r\n\r\n" + grid));
+    ASSERT_TRUE(uploads(1));
+  }
+  EXPECT_TRUE(uploads(0));
+  EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
+  EXPECT_EQ(server_.state(), before);
 }
 
 }  // namespace

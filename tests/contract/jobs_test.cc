@@ -1,6 +1,9 @@
 // Work that is asked for now and taken later.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "tests/contract/test_server.h"
 
 namespace tests::contract {
@@ -124,6 +127,126 @@ TEST_F(JobsTest, WhatThereIsNotIsNamedAsTheStandardSays) {
   auto busy = server_.occupy_worker();
   const std::string job = server_.upload("/tins?id=new", "text/plain", ascii_grid(3, 3), kAsync).header("location");
   EXPECT_EQ(type(job + "/results"), base + "result-not-ready");
+}
+
+/// Who waits for a job and goes never learns its id.
+TEST_F(JobsTest, AJobThatAClientWaitsForEndsWhenTheClientGoes) {
+  ASSERT_EQ(server_.post_json("/tins", R"({"id":"t","vertices":[[0,0,1],[9,0,2],[0,9,3]]})").status, 201);
+  const auto busy = server_.occupy_worker();
+  const std::string body = R"({"inputs":{"tin":"t","tolerance":1}})";
+  const auto newest = [&] { return Json::parse(server_.get("/jobs").body).at("jobs").at(0); };
+  const Json occupying = newest();
+  {
+    support::RawClient client(server_.port());
+    client.send(
+        "POST /processes/simplify/execution HTTP/1.1\r\nHost: t\r\nContent-Type: application/json\r\n"
+        "Content-Length: " +
+        std::to_string(body.size()) + "\r\n\r\n" + body);
+    for (int i = 0; i < 500 && newest() == occupying; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(newest().at("status"), "accepted");
+  }
+  for (int i = 0; i < 500 && newest().at("status") == "accepted"; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(newest().at("status"), "dismissed");
+}
+
+// The list (OGC API Processes, job list) --------------------------------------------------------------------
+
+class JobListTest : public JobsTest {
+ protected:
+  JobListTest() {
+    EXPECT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+    import_ = id_of(server_.upload("/tins?id=new", "text/plain", ascii_grid(3, 3), kAsync));
+    works_ = id_of(simplify(R"({"tin":"grid","maxVertices":5,"as":"small"})"));
+    for (const std::string& id : {import_, works_}) EXPECT_EQ(finished("/jobs/" + id), "successful");
+    busy_ = server_.occupy_worker();
+    waits_ = id_of(simplify(R"({"tin":"grid","maxVertices":5})"));
+  }
+  static std::string id_of(const RawAnswer& accepted) { return accepted.header("location").substr(6); }
+  std::vector<std::string> listed(const std::string& query) {
+    const RawAnswer answer = server_.get("/jobs?" + query);
+    EXPECT_EQ(answer.status, 200) << query << answer.body;
+    std::vector<std::string> ids;
+    if (answer.status != 200) return ids;
+    const Json list = Json::parse(answer.body);
+    for (const Json& job : list.at("jobs")) ids.push_back(job.at("jobID"));
+    return ids;
+  }
+
+  using Ids = std::vector<std::string>;
+  std::string import_, works_, waits_;
+  std::unique_ptr<TestServer::Occupation> busy_;
+};
+
+TEST_F(JobListTest, ConditionsSelect) {
+  EXPECT_EQ(listed("type=process").size(), 4u) << "three, and the one that occupies the worker";
+  EXPECT_EQ(listed("processID=simplify&status=accepted,successful"), (Ids{waits_, works_}))
+      << "the latest first";
+  EXPECT_EQ(listed("processID=simplify&status=running").size(), 1u);
+  EXPECT_EQ(listed("processID=import,contours"), Ids{import_});
+  EXPECT_EQ(listed("status=accepted"), Ids{waits_});
+  EXPECT_EQ(listed("status=successful,failed"), (Ids{works_, import_}));
+  EXPECT_EQ(listed("status=successful&processID=simplify"), Ids{works_});
+  EXPECT_EQ(listed("processID=nothing"), Ids{});
+  EXPECT_EQ(listed("datetime=2000-01-01/2001-01-01"), Ids{});
+  EXPECT_EQ(listed("datetime=2000-01-01/..&processID=simplify&status=accepted,successful"),
+            (Ids{waits_, works_}));
+  EXPECT_EQ(listed("maxDuration=3600&processID=simplify&status=accepted,successful"), Ids{works_})
+      << "one that has not begun has no duration";
+  EXPECT_EQ(listed("minDuration=3600"), Ids{});
+  EXPECT_EQ(listed("minDuration=0&maxDuration=3600&processID=import"), Ids{import_});
+}
+
+TEST_F(JobListTest, PagesFollowOneAnother) {
+  Ids seen;
+  std::string target = "/jobs?limit=1&type=process";
+  for (int page = 0; page < 4; ++page) {
+    const Json list = Json::parse(server_.get(target).body);
+    ASSERT_EQ(list.at("jobs").size(), 1u);
+    seen.push_back(list.at("jobs").at(0).at("jobID"));
+    target.clear();
+    for (const Json& link : list.at("links")) {
+      if (link.at("rel") == "next") target = link.at("href");
+    }
+    EXPECT_EQ(target.empty(), page == 3);
+    EXPECT_TRUE(target.empty() || target.find("type=process") != std::string::npos);
+  }
+  EXPECT_EQ(seen, listed("type=process"));
+}
+
+TEST_F(JobListTest, BadConditionsAre400) {
+  for (const char* query :
+       {"type=wps", "status=lost", "status=", "status=running,", "datetime=today", "minDuration=-1",
+        "minDuration=x", "maxDuration=1.5", "limit=0", "limit=10001", "next=1", "next=x.y", "next="}) {
+    EXPECT_EQ(server_.get(std::string("/jobs?") + query).status, 400) << query;
+  }
+}
+
+TEST_F(JobListTest, PeopleSeePages) {
+  const std::string html = "Accept: text/html\r\n";
+  for (const std::string& target :
+       {std::string("/jobs"), "/jobs/" + works_, std::string("/processes"),
+        std::string("/processes/simplify"), std::string("/tins"), std::string("/conformance")}) {
+    const RawAnswer page = server_.get(target, html);
+    EXPECT_EQ(page.status, 200);
+    EXPECT_EQ(page.header("content-type"), "text/html; charset=utf-8") << target;
+  }
+  EXPECT_NE(server_.get("/jobs", html).body.find(works_), std::string::npos);
+}
+
+/// Work that takes longer than the server waits becomes a job. No preference was stated, so none was applied.
+TEST(JobsThatOutlastTheWaitTest, AreAnsweredWithTheJob) {
+  TestServer server([](server::Config& config) { config.jobs.sync_seconds = 1; });
+  ASSERT_EQ(server.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+  auto busy = server.occupy_worker();
+  const std::string inputs = R"({"inputs":{"tin":"grid","maxVertices":5,"as":"small"}})";
+  const RawAnswer answer = server.post_json("/processes/simplify/execution", inputs);
+  EXPECT_EQ(answer.status, 201);
+  EXPECT_EQ(answer.header("preference-applied"), "");
+  EXPECT_EQ(Json::parse(answer.body).at("status"), "accepted");
+  busy.reset();
+  EXPECT_EQ(server.finished(answer.header("location")), "successful");
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // Every limit of the configuration: at the limit all is well, one past it is refused and changes nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
+#include <functional>
 #include <thread>
 
 #include "tests/contract/test_server.h"
@@ -262,6 +265,78 @@ TEST(LimitsTest, BytesOfAnUploadWithAndWithoutALength) {
   EXPECT_EQ(chunked(grid).status, 201);
 }
 
+/// Numbers of files, the lowest byte first, or the highest.
+template <class T>
+void put(std::string& out, T value, bool highest_first = false) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  if (highest_first) std::reverse(bytes, bytes + sizeof value);
+  out.append(bytes, sizeof value);
+}
+
+/// A shapefile of three points with heights.
+std::string shapefile() {
+  constexpr std::int32_t kPointZ = 11, kRecordWords = 18;
+  std::string out;
+  const std::int32_t words = 50 + 3 * (4 + kRecordWords);
+  for (const std::int32_t number : {9994, 0, 0, 0, 0, 0, words}) put(out, number, true);
+  for (const std::int32_t number : {1000, kPointZ}) put(out, number);
+  for (const double bound : {0., 0., 9., 9., 1., 3., 0., 0.}) put(out, bound);
+  for (std::int32_t i = 1; i <= 3; ++i) {
+    put(out, i, true);
+    put(out, kRecordWords, true);
+    put(out, kPointZ);
+    for (const double value : {i == 2 ? 9. : 0., i == 3 ? 9. : 0., static_cast<double>(i), 0.})
+      put(out, value);
+  }
+  return out;
+}
+
+/// A ZIP archive that holds one file as it is.
+std::string zip_of(const std::string& name, const std::string& content) {
+  std::uint32_t crc = ~0U;
+  for (const char c : content) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0xEDB88320U : 0);
+  }
+  const auto size = static_cast<std::uint32_t>(content.size());
+  std::string about;
+  for (const int number : {10, 0, 0, 0, 0x21})
+    put(about, static_cast<std::uint16_t>(number));  // version, flags, stored, time and date
+  for (const std::uint32_t number : {~crc, size, size}) put(about, number);
+  put(about, static_cast<std::uint16_t>(name.size()));
+  put(about, std::uint16_t{0});
+  std::string out = "PK\003\004" + about + name + content, directory = "PK\001\002";
+  put(directory, std::uint16_t{10});
+  directory += about;
+  for (int i = 0; i < 3; ++i) put(directory, std::uint16_t{0});
+  for (int i = 0; i < 2; ++i) put(directory, std::uint32_t{0});
+  directory += name;
+  const auto begin = static_cast<std::uint32_t>(out.size());
+  out += directory + "PK\005\006";
+  for (const int number : {0, 0, 1, 1}) put(out, static_cast<std::uint16_t>(number));
+  put(out, static_cast<std::uint32_t>(directory.size()));
+  put(out, begin);
+  put(out, std::uint16_t{0});
+  return out;
+}
+
+TEST(LimitsTest, BytesUnpackedFromAnArchive) {
+  const std::string shape = shapefile(), archive = zip_of("hill.shp", shape);
+  TestServer fits([&](server::Config& config) {
+    config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size());
+  });
+  const RawAnswer made = fits.upload("/tins?id=hill", "application/zip", archive);
+  EXPECT_EQ(made.status, 201) << made.body;
+  EXPECT_EQ(fits.tin("hill").at("vertexCount"), 3);
+  TestServer narrow([&](server::Config& config) {
+    config.limits.unpacked_bytes = static_cast<std::int64_t>(shape.size()) - 1;
+  });
+  const std::string before = narrow.state();
+  expect_too_large(narrow.upload("/tins?id=hill", "application/zip", archive));
+  EXPECT_EQ(narrow.state(), before);
+}
+
 TEST(LimitsTest, PixelsOfARaster) {
   TestServer server([](server::Config& config) { config.limits.raster_pixels = 35; });
   EXPECT_EQ(server.upload("/tins?id=t", "text/plain", ascii_grid(7, 5)).status, 201);
@@ -316,6 +391,62 @@ TEST(LimitsTest, JobsThatAreRemembered) {
         200);
   }
   EXPECT_EQ(Json::parse(server.get("/jobs").body).at("jobs").size(), 2U);
+}
+
+/// With one of two places taken another request goes on; with both, it is told to come later.
+void expect_places(TestServer& server, server::api::Slots server::api::Context::*slots,
+                   const std::function<int()>& status_of_one) {
+  const auto one = server.take_place(slots);
+  EXPECT_EQ(status_of_one() / 100, 2);
+  {
+    const auto other = server.take_place(slots);
+    EXPECT_EQ(status_of_one(), 429);
+  }
+  EXPECT_EQ(status_of_one() / 100, 2);
+}
+
+TEST(LimitsTest, UploadsAndExportsAtOnce) {
+  TestServer server([](server::Config& config) {
+    config.limits.uploads_at_once = 2;
+    config.limits.exports_at_once = 2;
+  });
+  int count = 0;
+  expect_places(server, &server::api::Context::uploads, [&] {
+    return server.upload("/tins?id=t" + std::to_string(++count), "text/plain", ascii_grid(3, 3)).status;
+  });
+  expect_places(server, &server::api::Context::exports,
+                [&] { return server.get("/tins/t1/export?f=geotiff").status; });
+  EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+}
+
+/// Who finds no place to wait in is told where to ask later.
+TEST(LimitsTest, RequestsThatWaitForTheirJob) {
+  TestServer server([](server::Config& config) { config.jobs.sync_waiting = 2; });
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":)" + vertices(4) + "}").status, 201);
+  const auto simplify = [&] {
+    return server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","tolerance":1}})")
+        .status;
+  };
+  const auto one = server.take_place(&server::api::Context::waiting);
+  EXPECT_EQ(simplify(), 200);
+  const auto other = server.take_place(&server::api::Context::waiting);
+  EXPECT_EQ(simplify(), 201);
+}
+
+TEST(LimitsTest, JobsThatRun) {
+  TestServer server([](server::Config& config) { config.jobs.workers = 2; });
+  const auto submit = [&](const std::string& id) {
+    return server.upload("/tins?id=" + id, "text/plain", ascii_grid(3, 3), "Prefer: respond-async\r\n")
+        .header("location");
+  };
+  const auto one = server.occupy_worker();
+  EXPECT_EQ(server.finished(submit("a")), "successful") << "by the other worker";
+  {
+    const auto other = server.occupy_worker();
+    const std::string job = submit("b");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(Json::parse(server.get(job).body).at("status"), "accepted");
+  }
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // What supervisors, load balancers and monitoring ask for.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 #include "tests/contract/test_server.h"
 
@@ -47,6 +49,10 @@ TEST(OperationsTest, MetricsCountWhatHappens) {
   EXPECT_EQ(sample(answer.body, "tinsmith_vertices"), 5);
   EXPECT_EQ(grown("tinsmith_edits_total"), 2);
   EXPECT_EQ(grown("tinsmith_revisions_total"), 1);
+  EXPECT_GE(grown("tinsmith_commits_total"), 2) << "of the TIN and of its revision";
+  EXPECT_GE(grown("tinsmith_committed_writes_total"), 2);
+  EXPECT_GT(grown("tinsmith_commit_seconds_total"), 0);
+  EXPECT_EQ(sample(answer.body, "tinsmith_commit_queue"), 0);
   EXPECT_EQ(grown(R"(tinsmith_http_requests_total{method="POST",route="/tins/{tin}/edits",status="2xx"})"),
             1);
   EXPECT_EQ(grown(R"(tinsmith_http_requests_total{method="GET",route="/tins/{tin}",status="4xx"})"), 1);
@@ -67,6 +73,20 @@ TEST(OperationsTest, MetricsTellOfJobsWithoutTheirIds) {
   EXPECT_EQ(sample(text, R"(tinsmith_jobs{state="accepted"})"), 1);
   EXPECT_EQ(sample(text, R"(tinsmith_job_progress_ratio{kind="simplify",number="0"})"), 0);
   EXPECT_EQ(text.find(queued.header("location").substr(6)), std::string::npos);
+}
+
+TEST(OperationsTest, MetricsTellWhatHoldsAPlace) {
+  TestServer server;
+  ASSERT_EQ(server.post_json("/tins", R"({"id":"t","vertices":[[0,0,1],[1,0,2],[0,1,3]]})").status, 201);
+  const auto streams = [&] {
+    return sample(server.get("/metrics").body, R"(tinsmith_requests_in_work{kind="change_stream"})");
+  };
+  EXPECT_EQ(streams(), 0);
+  support::RawClient listener(server.port());
+  listener.send("GET /tins/t/changes HTTP/1.1\r\nHost: t\r\nAccept: text/event-stream\r\n\r\n");
+  for (int i = 0; i < 200 && streams() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(streams(), 1);
+  EXPECT_EQ(sample(server.get("/metrics").body, R"(tinsmith_requests_in_work{kind="edit"})"), 0);
 }
 
 TEST(OperationsTest, EveryLineOfTheMetricsIsWellFormed) {

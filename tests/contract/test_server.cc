@@ -27,6 +27,7 @@ TestServer::TestServer(const std::function<void(server::Config&)>& adjust) {
   context_.reset(new server::api::Context{*catalogue_, *jobs_, config_});
   server::http::ServerOptions options;
   options.worker_threads = 8;
+  options.buffered_bytes = static_cast<std::uint64_t>(config_.http.buffered_bytes);
   options.memory_body_limit = static_cast<std::uint64_t>(config_.limits.body_bytes_memory);
   options.file_body_limit = static_cast<std::uint64_t>(config_.limits.upload_bytes);
   options.gate = server::api::make_gate(server::auth::Tokens(config_.auth.tokens), config_.auth.anonymous_read);

@@ -58,6 +58,11 @@ class TestServer {
   };
   std::unique_ptr<Occupation> occupy_worker() { return std::make_unique<Occupation>(*jobs_); }
 
+  /// Takes one of the places that bound how many requests of a kind are in work, until the result goes.
+  server::api::Slot take_place(server::api::Slots server::api::Context::*slots) {
+    return server::api::Slot(*context_.*slots);
+  }
+
   /// "GET /tins 200" and so on: what has been answered so far.
   const std::set<std::string>& answered() const { return answered_; }
   std::uint16_t port() const { return port_; }

@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto document = proto::Document::parse(bytes);
   if (document) TIN_CHECK(tests::fuzz::walk(document->root(), 0) > 0);
   const auto created = proto::read_create_tin(bytes, 100);
-  const auto edits = proto::read_edit_request(bytes, 100);
+  const auto edits = proto::read_edit_request(bytes, {100, 3, 100});
   const auto elevations = proto::read_elevation_request(bytes, 100);
   if (!document) TIN_CHECK(!created && !edits && !elevations);
   if (edits) TIN_CHECK(edits->ops.size() <= 100);

@@ -15,6 +15,7 @@ fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 need() { command -v "$1" >/dev/null || { echo "skipped: there is no $1"; exit 77; }; }
 same() { [ "$1" = "$2" ] || fail "$3: $1 is not $2"; }
 
+# start_server [CONFIGURATION [TOKEN]]
 start_server() {
   printf '%s' "${1:-"{}"}" >"$work/config.json"
   "$tinsmith" serve --config "$work/config.json" --listen 127.0.0.1:0 --data "$work/data" >"$work/out" 2>"$work/err" &
@@ -29,5 +30,5 @@ start_server() {
     printf 'ncols 40\nnrows 30\nxllcorner 500000\nyllcorner 4500000\ncellsize 30\nNODATA_value -9999\n'
     awk 'BEGIN { for (j = 0; j < 30; j++) { for (i = 0; i < 40; i++) printf "%s ", 200 + i / 4 - j / 2 + (i * 7 + j * 13) % 11; print "" } }'
   } >"$work/rough.asc"
-  curl -fsS -o /dev/null --data-binary @"$work/rough.asc" "$base/tins?id=rough&crs=EPSG:32617" || fail "no terrain"
+  curl -fsS -o /dev/null ${2:+-H "Authorization: Bearer $2"} --data-binary @"$work/rough.asc" "$base/tins?id=rough&crs=EPSG:32617" || fail "no terrain"
 }

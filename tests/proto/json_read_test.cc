@@ -2,7 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
+
+#include "tests/support/point_sets.h"
 
 namespace {
 
@@ -125,6 +132,82 @@ TEST(JsonReadTest, ErrorsDoNotRepeatHugeNames) {
   const Document document = Document::parse(text).value();
   const Error error = document.root().object({"a"}).error();
   EXPECT_LT(error.message.size() + error.where.size(), 400U);
+}
+
+/// Texts of these pieces are JSON, or nearly, often enough.
+std::string scrambled(support::Random& random) {
+  static constexpr std::string_view kPieces[] = {"[",
+                                                 "]",
+                                                 "{",
+                                                 "}",
+                                                 ",",
+                                                 ":",
+                                                 "\"a\"",
+                                                 "\"b\"",
+                                                 "\"\\u00e9\"",
+                                                 "\"\xc3\xa9\"",
+                                                 "0",
+                                                 "7",
+                                                 "-",
+                                                 "1.5",
+                                                 ".",
+                                                 "e",
+                                                 "E+2",
+                                                 "00",
+                                                 "-0",
+                                                 "18446744073709551616",
+                                                 "123456789012345678",
+                                                 "1e999",
+                                                 "1e-999",
+                                                 "true",
+                                                 "false",
+                                                 "null",
+                                                 "nul",
+                                                 " ",
+                                                 "\n",
+                                                 "\t",
+                                                 "\"",
+                                                 "\x01"};
+  std::string text;
+  const std::size_t pieces = 1 + random() % 9;
+  for (std::size_t i = 0; i < pieces; ++i) text += kPieces[random() % std::size(kPieces)];
+  return text;
+}
+
+/// What is plain is read another way than what is not: both take exactly what is JSON.
+TEST(JsonReadTest, TakesExactlyWhatTheLibraryTakes) {
+  support::Random random(support::seed());
+  int taken = 0;
+  for (int i = 0; i < 300'000; ++i) {
+    const std::string text =
+        i % 2 == 0 ? scrambled(random) : "[" + scrambled(random) + "," + scrambled(random) + "]";
+    const auto document = Document::parse(text);
+    const bool refused_for_more = !document && (document.error().code == Code::kNotFinite ||
+                                                document.error().message.find("twice") != std::string::npos);
+    EXPECT_TRUE(document.ok() == nlohmann::json::accept(text) || refused_for_more) << text;
+    taken += document.ok() ? 1 : 0;
+  }
+  EXPECT_GT(taken, 3000);
+}
+
+TEST(JsonReadTest, NumbersAreReadToTheLastBit) {
+  support::Random random(support::seed());
+  for (int i = 0; i < 100'000; ++i) {
+    std::string text = random() % 2 == 0 ? "-" : "";
+    text += std::to_string(random() >> (random() % 64));
+    if (random() % 2 == 0) text += "." + std::to_string(random() >> (random() % 64));
+    if (random() % 3 == 0) text += "e" + std::to_string(static_cast<int>(random() % 640) - 320);
+    const double expected = std::strtod(text.c_str(), nullptr);
+    const auto document = Document::parse("[" + text + "]");
+    if (std::isinf(expected)) {
+      EXPECT_EQ(document.error().code, Code::kNotFinite) << text;
+      continue;
+    }
+    ASSERT_TRUE(document.ok()) << text;
+    const double value = (*document->root().array(1)->begin()).number().value();
+    EXPECT_EQ(std::memcmp(&value, &expected, sizeof value) == 0 || (value == 0 && expected == 0), true)
+        << text;
+  }
 }
 
 }  // namespace

@@ -101,11 +101,14 @@ TEST(EditRequestTest, ReadsEveryOp) {
   const auto request =
       proto::read_edit_request(
           R"({"crs":"EPSG:4326","ops":[{"op":"insert","x":1,"y":2.5,"z":-3},{"id":7,"op":"remove"},)"
-          R"({"op":"move","id":9007199254740992,"x":1e3,"y":0},{"op":"set-z","id":8,"z":4}]})",
-          4)
+          R"({"op":"move","id":9007199254740992,"x":1e3,"y":0},{"op":"set-z","id":8,"z":4},)"
+          R"({"op":"remove-within","polygon":[[1,2],[3,4],[5.5,6]]}]})",
+          {5, 1, 3})
           .value();
   EXPECT_EQ(request.crs, "EPSG:4326");
-  ASSERT_EQ(request.ops.size(), 4U);
+  ASSERT_EQ(request.ops.size(), 5U);
+  EXPECT_EQ(std::get<proto::RemoveWithinOp>(request.ops[4]).polygon,
+            (std::vector<proto::Position2>{{1, 2}, {3, 4}, {5.5, 6}}));
   const auto& insert = std::get<proto::InsertOp>(request.ops[0]);
   EXPECT_EQ(std::tie(insert.x, insert.y, insert.z), std::make_tuple(1, 2.5, -3));
   EXPECT_EQ(std::get<proto::RemoveOp>(request.ops[1]).id.value(), 7U);
@@ -113,7 +116,7 @@ TEST(EditRequestTest, ReadsEveryOp) {
   EXPECT_EQ(move.id.value(), std::uint64_t{1} << 53);
   EXPECT_EQ(move.x, 1000);
   EXPECT_EQ(std::get<proto::SetZOp>(request.ops[3]).z, 4);
-  EXPECT_TRUE(proto::read_edit_request(R"({"ops":[]})", 0)->ops.empty());
+  EXPECT_TRUE(proto::read_edit_request(R"({"ops":[]})", {0, 3, 100})->ops.empty());
 }
 
 TEST(EditRequestTest, ErrorsSayWhere) {
@@ -140,8 +143,22 @@ TEST(EditRequestTest, ErrorsSayWhere) {
           {R"({"ops":[{"op":"remove","id":1,"id":2}]})", Code::kMalformed, "/ops/0/id"},
           {R"({"ops":[{"op":"remove","id":1},{"op":"remove","id":2},{"op":"remove","id":3}]})",
            Code::kTooLarge, "/ops"},
+          {R"({"ops":[{"op":"remove-within"}]})", Code::kMalformed, "/ops/0"},
+          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4]]}]})", Code::kInvalidValue,
+           "/ops/0/polygon"},
+          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5]]}]})", Code::kMalformed,
+           "/ops/0/polygon/2"},
+          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5,6],[7,8],[9,0]]}]})", Code::kTooLarge,
+           "/ops/0/polygon"},
+          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5,6]],"id":1}]})", Code::kMalformed,
+           "/ops/0/id"},
+          {R"({"ops":[{"op":"remove-within","polygon":[[1,2],[3,4],[5,6]]},)"
+           R"({"op":"remove-within","polygon":[[1,2],[3,4],[5,6]]}]})",
+           Code::kTooLarge, "/ops/1"},
       },
-      [](const char* body) { return proto::read_edit_request(body, 2); });
+      [](const char* body) {
+        return proto::read_edit_request(body, {2, 1, 4});
+      });
 }
 
 TEST(ElevationRequestTest, ReadsPositionsAndSaysWhatIsWrong) {
@@ -210,7 +227,7 @@ TEST(HostileBodiesTest, RandomlyChangedBytesDoNoHarm) {
         ADD_FAILURE() << line << "\n" << body;
     };
     expect_contract(proto::read_create_tin(body, 10).ok(), "/tins");
-    expect_contract(proto::read_edit_request(body, 10).ok(), "/tins/{tin}/edits");
+    expect_contract(proto::read_edit_request(body, {10, 3, 100}).ok(), "/tins/{tin}/edits");
     expect_contract(proto::read_elevation_request(body, 10).ok(), "/tins/{tin}/elevation");
     expect_contract(read_simplify(body).ok(), "/processes/{process}/execution");
   }

@@ -36,7 +36,7 @@ TEST(OpenApiTest, ExamplesOfRequestsCanBeRead) {
   EXPECT_TRUE(proto::read_create_tin(create, 10).ok());
   const char* edit = R"({"ops":[{"op":"insert","x":1,"y":2,"z":3},{"op":"set-z","id":1,"z":4}]})";
   EXPECT_TRUE(request_violations("POST", "/tins/{tin}/edits", edit).empty());
-  EXPECT_TRUE(proto::read_edit_request(edit, 10).ok());
+  EXPECT_TRUE(proto::read_edit_request(edit, {10, 3, 100}).ok());
 }
 
 /// What the checker finds, the reader refuses too.
@@ -60,7 +60,7 @@ TEST(SchemaCheckTest, SeesWhatIsWrong) {
        {R"({"ops":[{"op":"insert","x":1,"y":2}]})", R"({"ops":[{"op":"fly"}]})",
         R"({"ops":[{"op":"remove","id":0}]})", R"({"ops":[{"op":"remove","id":1,"z":2}]})", R"({"op":[]})"}) {
     EXPECT_FALSE(request_violations("POST", "/tins/{tin}/edits", body).empty()) << body;
-    EXPECT_FALSE(proto::read_edit_request(body, 10).ok()) << body;
+    EXPECT_FALSE(proto::read_edit_request(body, {10, 3, 100}).ok()) << body;
   }
 }
 

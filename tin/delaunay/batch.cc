@@ -1,6 +1,9 @@
 // Batches: building, insertion and removal of many vertices at a time, in the order that memory likes best.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
 
 #include "tin/delaunay/bulk.h"
 #include "tin/delaunay/hilbert_sort.h"
@@ -20,6 +23,7 @@ namespace {
 constexpr std::size_t kBetweenReports = 4096;
 constexpr std::size_t kAhead = 4;    // how many operations ahead memory is asked for, per dependent load
 constexpr std::size_t kWorthAThread = 20000;  // points
+constexpr std::uint32_t kBitsPerWord = 64;
 constexpr std::size_t kTogether = 16;  // stars fetched in turns
 
 /// Reports after each 4096th operation. False when it is time to stop.
@@ -29,8 +33,8 @@ bool go_on(base::Progress* progress, std::size_t done, std::size_t all) {
   return !progress->cancelled();
 }
 
-/// Brings the stars of the next few vertices to be removed into the caches. A star is walked from triangle to triangle, each
-/// a wait for memory; walking many in turns makes them wait together.
+/// Brings the stars of the next few vertices to be removed into the caches. A star is walked from triangle to
+/// triangle, each a wait for memory; walking many in turns makes them wait together.
 class StarFetcher {
  public:
   explicit StarFetcher(const Mesh& mesh) : mesh_(mesh) {}
@@ -67,6 +71,52 @@ class StarFetcher {
   const Mesh& mesh_;
   std::array<Around, kTogether> around_;
 };
+
+std::vector<VertexSlot> in_slot_order(const Mesh& mesh, std::span<const VertexSlot> slots) {
+  std::vector<VertexSlot> order(slots.begin(), slots.end());
+  if (slots.size() < mesh.vertex_slots() / kBitsPerWord) {
+    std::sort(order.begin(), order.end());
+    return order;
+  }
+  std::vector<std::uint64_t> wanted(mesh.vertex_slots() / kBitsPerWord + 1);
+  for (const VertexSlot v : slots)
+    wanted[v.value() / kBitsPerWord] |= std::uint64_t{1} << v.value() % kBitsPerWord;
+  std::size_t count = 0;
+  for (std::uint32_t word = 0; word < wanted.size(); ++word) {
+    for (std::uint64_t bits = wanted[word]; bits != 0; bits &= bits - 1) {
+      order[count++] = VertexSlot(word * kBitsPerWord + static_cast<std::uint32_t>(std::countr_zero(bits)));
+    }
+  }
+  return order;
+}
+
+/// Whether neighbours in this order are much nearer to each other than others, by samples.
+bool follows_the_ground(const Mesh& mesh, std::span<const VertexSlot> order) {
+  constexpr std::size_t kSamples = 64;
+  constexpr std::int64_t kMuch = 8;
+  if (order.size() < 2 * kSamples) return true;
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    const Point p = mesh.point(order[i]), q = mesh.point(order[j]);
+    return std::abs(std::int64_t{p.x} - q.x) + std::abs(std::int64_t{p.y} - q.y);
+  };
+  std::int64_t between_neighbours = 0, between_others = 0;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const std::size_t i = k * (order.size() - 1) / kSamples;
+    between_neighbours += distance(i, i + 1);
+    between_others += distance(i, (i + order.size() / 2) % order.size());
+  }
+  return kMuch * between_neighbours < between_others;
+}
+
+std::vector<VertexSlot> along_the_curve(const Mesh& mesh, std::span<const VertexSlot> slots) {
+  std::vector<Point> points;
+  points.reserve(slots.size());
+  for (const VertexSlot v : slots) points.push_back(mesh.point(v));
+  std::vector<VertexSlot> order;
+  order.reserve(slots.size());
+  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(slots[item.index]);
+  return order;
+}
 
 /// Stores points along the curve, equal ones once, on several threads.
 class Storing {
@@ -115,7 +165,8 @@ class Storing {
   void close_gap(unsigned part, std::size_t count) {
     const std::size_t first = begin(part), end = begin(part + 1);
     for (std::size_t k = 1; k <= kept_[part]; ++k) {
-      mesh_.set_point(VertexSlot(static_cast<std::uint32_t>(count + k)), mesh_.point(VertexSlot(static_cast<std::uint32_t>(first + k))));
+      mesh_.set_point(VertexSlot(static_cast<std::uint32_t>(count + k)),
+                      mesh_.point(VertexSlot(static_cast<std::uint32_t>(first + k))));
     }
     for (std::size_t i = first; i < end; ++i) {
       VertexSlot& slot = slots_[sorted_[i].index];
@@ -133,18 +184,20 @@ class Storing {
 
 }  // namespace
 
-bool Triangulation::insert_many(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
-                                unsigned threads) {
+bool Triangulation::insert_many(std::span<const Point> points, std::vector<VertexSlot>& slots,
+                                base::Progress* progress, unsigned threads) {
   slots.assign(points.size(), VertexSlot(kNone));
-  const bool done = mesh().vertex_count() == 0 ? build(points, slots, progress, threads) : insert_more(points, slots, progress);
+  const bool done = mesh().vertex_count() == 0 ? build(points, slots, progress, threads)
+                                               : insert_more(points, slots, progress);
   base_.forget_fresh();
   return done;
 }
 
-bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress,
-                          unsigned threads) {
+bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>& slots,
+                          base::Progress* progress, unsigned threads) {
   if (points.empty()) return true;
-  threads = static_cast<unsigned>(std::clamp<std::size_t>(points.size() / kWorthAThread, 1, std::max(threads, 1U)));
+  threads =
+      static_cast<unsigned>(std::clamp<std::size_t>(points.size() / kWorthAThread, 1, std::max(threads, 1U)));
   Mesh& mesh = base_.mutable_mesh();
   mesh = Mesh();
   Storing(points, slots, mesh, threads).run();
@@ -157,8 +210,10 @@ bool Triangulation::build(std::span<const Point> points, std::vector<VertexSlot>
   return true;
 }
 
-/// Along the Hilbert curve, each walk from the grid's hint or from the last vertex, whichever should be nearer.
-bool Triangulation::insert_more(std::span<const Point> points, std::vector<VertexSlot>& slots, base::Progress* progress) {
+/// Along the Hilbert curve, each walk from the grid's hint or from the last vertex, whichever should be
+/// nearer.
+bool Triangulation::insert_more(std::span<const Point> points, std::vector<VertexSlot>& slots,
+                                base::Progress* progress) {
   const auto sorted = hilbert_sorted(points);
   const std::size_t count = sorted.size();
   std::size_t done = 0;
@@ -178,8 +233,10 @@ bool Triangulation::insert_more(std::span<const Point> points, std::vector<Verte
   return true;
 }
 
-/// Asks for what the insertions after the i-th will touch: a cell of the grid, then its triangle, then what is around that.
-void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span<const OnCurve> order, std::size_t i) const {
+/// Asks for what the insertions after the i-th will touch: a cell of the grid, then its triangle, then what
+/// is around that.
+void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span<const OnCurve> order,
+                                        std::size_t i) const {
   if (i + 3 * kAhead < order.size()) grid_.prefetch_cell(points[order[i + 3 * kAhead].index]);
   if (i + 2 * kAhead < order.size()) {
     const TriangleSlot t = grid_.hint(points[order[i + 2 * kAhead].index]);
@@ -195,13 +252,11 @@ void Triangulation::fetch_for_insertion(std::span<const Point> points, std::span
   }
 }
 
+/// In the order of their slots where that follows the ground, as it does in a mesh that was built or
+/// compacted; else along the curve, which takes longer to find.
 bool Triangulation::remove_many(std::span<const VertexSlot> slots, base::Progress* progress) {
-  std::vector<Point> points;
-  points.reserve(slots.size());
-  for (const VertexSlot v : slots) points.push_back(mesh().point(v));
-  std::vector<VertexSlot> order;
-  order.reserve(slots.size());
-  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(slots[item.index]);
+  std::vector<VertexSlot> order = in_slot_order(mesh(), slots);
+  if (!follows_the_ground(mesh(), order)) order = along_the_curve(mesh(), order);
   return remove_in_order(order, progress);
 }
 
@@ -217,18 +272,12 @@ bool Triangulation::remove_in_order(std::span<const VertexSlot> slots, base::Pro
 }
 
 mesh::Renumbering Triangulation::compact() {
-  std::vector<Point> points;
-  std::vector<VertexSlot> alive, order;
-  points.reserve(mesh().vertex_count());
+  std::vector<VertexSlot> alive;
   alive.reserve(mesh().vertex_count());
   for (std::uint32_t i = 1; i < mesh().vertex_slots(); ++i) {
-    if (!mesh().is_alive(VertexSlot(i))) continue;
-    alive.emplace_back(i);
-    points.push_back(mesh().point(VertexSlot(i)));
+    if (mesh().is_alive(VertexSlot(i))) alive.emplace_back(i);
   }
-  order.reserve(alive.size());
-  for (const OnCurve& item : hilbert_sorted(points)) order.push_back(alive[item.index]);
-  mesh::Renumbering moved = base_.mutable_mesh().renumber(order);
+  mesh::Renumbering moved = base_.mutable_mesh().renumber(along_the_curve(mesh(), alive));
   hierarchy_.renumber(moved.vertices);
   grid_.rebuild(mesh());
   base_.forget_fresh();

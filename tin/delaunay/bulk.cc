@@ -66,12 +66,15 @@ class Builder {
   double speed_ = 1;            // what each insertion of the first thread stands for
 };
 
-/// The first two vertices and the first that is not in line with them, counter-clockwise. False when all are collinear.
+/// The first two vertices and the first that is not in line with them, counter-clockwise. False when all are
+/// collinear.
 bool Builder::make_first_triangle() {
   if (count() < 3) return false;
   const VertexSlot a(1), b(2);
   VertexSlot c(3);
-  const auto turn = [&](VertexSlot v) { return exact::orientation(mesh_.point(a), mesh_.point(b), mesh_.point(v)); };
+  const auto turn = [&](VertexSlot v) {
+    return exact::orientation(mesh_.point(a), mesh_.point(b), mesh_.point(v));
+  };
   while (turn(c) == 0) {
     if (c.value() == count()) return false;
     c = VertexSlot(c.value() + 1);
@@ -81,10 +84,13 @@ bool Builder::make_first_triangle() {
   if (turn(c) < 0) std::swap(corner[0], corner[1]);
   const TriangleSlot inner = first_slot(a);
   const std::array<TriangleSlot, 3> outer{second_slot(a), first_slot(b), second_slot(b)};
-  // outer[i] is (infinite, corner[i - 1], corner[i + 1]), across the inner triangle's edge opposite to corner[i].
-  mesh_.write_triangle(inner, {corner, {HalfEdge(outer[0], 0), HalfEdge(outer[1], 0), HalfEdge(outer[2], 0)}});
+  // outer[i] is (infinite, corner[i - 1], corner[i + 1]), across the inner triangle's edge opposite to
+  // corner[i].
+  mesh_.write_triangle(inner,
+                       {corner, {HalfEdge(outer[0], 0), HalfEdge(outer[1], 0), HalfEdge(outer[2], 0)}});
   for (int i = 0; i < 3; ++i) {
-    const auto next = static_cast<std::size_t>(mesh::next3(i)), previous = static_cast<std::size_t>(mesh::prev3(i));
+    const auto next = static_cast<std::size_t>(mesh::next3(i)),
+               previous = static_cast<std::size_t>(mesh::prev3(i));
     mesh_.write_triangle(outer[static_cast<std::size_t>(i)],
                          {{kInfinite, corner[previous], corner[next]},
                           {HalfEdge(inner, i), HalfEdge(outer[previous], 2), HalfEdge(outer[next], 1)}});
@@ -100,7 +106,8 @@ void Builder::make_line() {
   mesh_.end_bulk(none);
   auto& line = mesh_.mutable_line();
   for (std::uint32_t v = 1; v <= count(); ++v) line.emplace_back(v);
-  std::sort(line.begin(), line.end(), [this](VertexSlot a, VertexSlot b) { return mesh_.point(a) < mesh_.point(b); });
+  std::sort(line.begin(), line.end(),
+            [this](VertexSlot a, VertexSlot b) { return mesh_.point(a) < mesh_.point(b); });
 }
 
 /// False when it is time to stop.
@@ -117,13 +124,15 @@ void Builder::fetch(std::uint32_t i, std::uint32_t end) const {
   mesh_.prefetch(first_slot(VertexSlot(i)));
 }
 
-/// Inserts `v`, walking from `start`, which then becomes a good place to walk to `next` from. False when the owner may not.
+/// Inserts `v`, walking from `start`, which then becomes a good place to walk to `next` from. False when the
+/// owner may not.
 template <class Owner>
 bool Builder::insert(Cavity& cavity, VertexSlot v, VertexSlot next, TriangleSlot& start, const Owner& owner) {
   const Point p = mesh_.point(v), q = next.value() <= count() ? mesh_.point(next) : p;
   const Stop stop = walk(mesh_, p, finite_start(mesh_, start), owner);
   if (stop.kind == Stop::Kind::kGaveUp || !cavity.carve(mesh_, p, stop, owner)) return false;
-  start = cavity.fill(mesh_, v, first_slot(v), second_slot(v), {std::int64_t{q.x} - p.x, std::int64_t{q.y} - p.y});
+  start = cavity.fill(mesh_, v, first_slot(v), second_slot(v),
+                      {std::int64_t{q.x} - p.x, std::int64_t{q.y} - p.y});
   return true;
 }
 
@@ -169,7 +178,9 @@ bool Builder::insert_left(std::span<const VertexSlot> left) {
 bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector<VertexSlot>& left) {
   // Whole strides, so that the first vertex of each territory is there already.
   const auto begin = [&](unsigned i) {
-    return i == threads ? count() + 1 : 1 + static_cast<std::uint32_t>(part_begin(count(), i, threads)) / kFirstStride * kFirstStride;
+    return i == threads ? count() + 1
+                        : 1 + static_cast<std::uint32_t>(part_begin(count(), i, threads)) / kFirstStride *
+                                  kFirstStride;
   };
   const Territory territory{begin(thread), begin(thread + 1)};
   if (territory.begin == territory.end) return true;  // what begins there is somebody else's
@@ -184,7 +195,8 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
       if (threads == 1) {
         insert(cavity, v, next, start, Everywhere{});
       } else if (!insert(cavity, v, next, start, territory)) {
-        // The territory need not be convex: the walk may have left it. Near on the curve is a vertex of the first round.
+        // The territory need not be convex: the walk may have left it. Near on the curve is a vertex of the
+        // first round.
         start = mesh_.triangle_at(VertexSlot(i - (i - 1) % kFirstStride));
         if (!insert(cavity, v, next, start, territory)) left.emplace_back(i);
       }
@@ -198,7 +210,8 @@ bool Builder::insert_in_territory(unsigned thread, unsigned threads, std::vector
 
 }  // namespace
 
-bool build_bulk(Mesh& mesh, unsigned threads, base::Progress* progress, const std::function<void()>& meanwhile) {
+bool build_bulk(Mesh& mesh, unsigned threads, base::Progress* progress,
+                const std::function<void()>& meanwhile) {
   return Builder(mesh, progress, meanwhile).run(threads);
 }
 

@@ -18,7 +18,8 @@ using mesh::VertexSlot;
 
 namespace {
 
-constexpr std::size_t kLarge = 64;  // a star worth to be stored in the order of its link, for those who will walk around it
+constexpr std::size_t kLarge =
+    64;  // a star worth to be stored in the order of its link, for those who will walk around it
 
 /// Whether the new point, at the origin and in line with the hull edge from q to r, lies on it.
 template <class Seen>
@@ -71,16 +72,18 @@ void Cavity::start(const Mesh& mesh, const Stop& stop) {
 }
 
 /// What decides when the determinant of the triangle to, from, apex is zero.
-[[gnu::cold, gnu::noinline]] bool Cavity::tie(const Mesh& mesh, Point p, const Seen& from, const Seen& to, const Seen& apex) {
+[[gnu::cold, gnu::noinline]] bool Cavity::tie(const Mesh& mesh, Point p, const Seen& from, const Seen& to,
+                                              const Seen& apex) {
   if (apex.vertex == kInfinite) return on_hull_edge(to, from);
   if (to.vertex == kInfinite) return on_hull_edge(from, apex);
   if (from.vertex == kInfinite) return on_hull_edge(apex, to);
   return exact::tie_is_inside(mesh.point(to.vertex), mesh.point(from.vertex), mesh.point(apex.vertex), p);
 }
 
-/// The triangles in conflict hold no vertex inside, so their dual is a tree, which is searched breadth first. What a test finds is
-/// hard to foresee, so nothing branches on it: the triangle's two other edges are always written behind the last, and
-/// count if it is in conflict. Edges from one corner come one after the other, each nearer to the rim: the last stays.
+/// The triangles in conflict hold no vertex inside, so their dual is a tree, which is searched breadth first.
+/// What a test finds is hard to foresee, so nothing branches on it: the triangle's two other edges are always
+/// written behind the last, and count if it is in conflict. Edges from one corner come one after the other,
+/// each nearer to the rim: the last stays.
 template <class Owner>
 bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& owner) {
   if (!owner.owns(stop.a.vertex) || !owner.owns(stop.b.vertex) || !owner.owns(stop.c.vertex)) return false;
@@ -116,8 +119,8 @@ bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& own
         Int128{to.square} * from_apex + Int128{from.square} * apex_to - Int128{apex.square} * edge.cross;
     bool conflict = determinant > 0;
     if (determinant == 0) [[unlikely]] conflict = tie(mesh, p, from, to, apex);
-    // Beyond a foreign vertex somebody else may be at work. Up to here each edge looked over has two vertices that are the
-    // owner's, so what is read of the triangle beyond it changes by nobody else.
+    // Beyond a foreign vertex somebody else may be at work. Up to here each edge looked over has two vertices
+    // that are the owner's, so what is read of the triangle beyond it changes by nobody else.
     if (conflict && !owner.owns(v)) [[unlikely]] return false;
     count += conflict ? 1 : 0;
   }
@@ -129,11 +132,15 @@ template bool Cavity::carve(const Mesh&, Point, const Stop&, const Everywhere&);
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const Territory&);
 template bool Cavity::carve(const Mesh&, Point, const Stop&, const OwnedFrom&);
 
-TriangleSlot Cavity::fill(Mesh& mesh, VertexSlot v, TriangleSlot extra1, TriangleSlot extra2, Direction toward) {
+TriangleSlot Cavity::fill(Mesh& mesh, VertexSlot v, TriangleSlot extra1, TriangleSlot extra2,
+                          Direction toward) {
   triangles_[triangle_count_++] = extra1;
   triangles_[triangle_count_++] = extra2;
-  if (triangle_count_ > kLarge) std::sort(triangles_.begin(), triangles_.begin() + static_cast<std::ptrdiff_t>(triangle_count_));
-  const auto side = [&](std::uint32_t corner) { return corners_[corner].x * toward.y - corners_[corner].y * toward.x; };
+  if (triangle_count_ > kLarge)
+    std::sort(triangles_.begin(), triangles_.begin() + static_cast<std::ptrdiff_t>(triangle_count_));
+  const auto side = [&](std::uint32_t corner) {
+    return corners_[corner].x * toward.y - corners_[corner].y * toward.x;
+  };
   std::uint32_t at = 0;
   VertexSlot from = corners_[0].vertex;
   std::int64_t from_side = side(0);

@@ -1,9 +1,10 @@
-// Insertion into a mesh of dimension 2: the triangles whose perturbed circle holds the new point make way for its star
-// (Bowyer, Watson).
+// Insertion into a mesh of dimension 2: the triangles whose perturbed circle holds the new point make way for
+// its star (Bowyer, Watson).
 //
-// All arithmetic is done with differences to the new point, which are computed once per vertex, and each edge's
-// cross product is kept for the triangle beyond it: an in-circle test then costs two cross products, one square and three wide
-// products. It is exact as it stands; a floating-point filter in front of it would only cost.
+// All arithmetic is done with differences to the new point, which are computed once per vertex, and each
+// edge's cross product is kept for the triangle beyond it: an in-circle test then costs two cross products,
+// one square and three wide products. It is exact as it stands; a floating-point filter in front of it would
+// only cost.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +23,16 @@ struct Direction {
 /// Works with buffers of its own, so that repeated insertions allocate nothing. One thread at a time.
 class Cavity {
  public:
-  /// Finds the triangles in conflict with `p`, from the stop of a walk to it on. Requires: no vertex stands at p.
-  /// False when one of them is not the owner's; nothing is changed here in any case.
+  /// Finds the triangles in conflict with `p`, from the stop of a walk to it on. Requires: no vertex stands
+  /// at p. False when one of them is not the owner's; nothing is changed here in any case.
   template <class Owner>
   bool carve(const mesh::Mesh& mesh, exact::Point p, const Stop& stop, const Owner& owner);
 
-  /// Stars the cavity from `v`, in the slots of the triangles in conflict and these two more. Returns the new triangle which
-  /// a ray from v in the direction `toward` runs through, where the next walk should start; any if there is none.
-  mesh::TriangleSlot fill(mesh::Mesh& mesh, mesh::VertexSlot v, mesh::TriangleSlot extra1, mesh::TriangleSlot extra2,
-                          Direction toward = {});
+  /// Stars the cavity from `v`, in the slots of the triangles in conflict and these two more. Returns the new
+  /// triangle which a ray from v in the direction `toward` runs through, where the next walk should start;
+  /// any if there is none.
+  mesh::TriangleSlot fill(mesh::Mesh& mesh, mesh::VertexSlot v, mesh::TriangleSlot extra1,
+                          mesh::TriangleSlot extra2, Direction toward = {});
 
   /// A triangle in conflict, after carve().
   mesh::TriangleSlot some_triangle() const { return triangles_.front(); }
@@ -38,8 +40,8 @@ class Cavity {
   std::span<const mesh::TriangleSlot> star() const { return {triangles_.data(), triangle_count_}; }
 
  private:
-  /// A corner with the height of its lift. The infinite vertex is seen at the origin, one unit up: in a determinant that leaves
-  /// the orientation of the other two with the new point, which is what decides.
+  /// A corner with the height of its lift. The infinite vertex is seen at the origin, one unit up: in a
+  /// determinant that leaves the orientation of the other two with the new point, which is what decides.
   struct Seen {
     std::int64_t x, y, square;
     mesh::VertexSlot vertex;
@@ -61,8 +63,8 @@ class Cavity {
   void start(const mesh::Mesh& mesh, const Stop& stop);
   void enlarge();
 
-  // Plain arrays that enlarge() doubles before they could overflow: with t triangles in conflict so far, there are t + 2
-  // corners and 2 t + 1 edges.
+  // Plain arrays that enlarge() doubles before they could overflow: with t triangles in conflict so far,
+  // there are t + 2 corners and 2 t + 1 edges.
   std::size_t room_ = 0;  // for triangles
   std::size_t triangle_count_ = 0;
   std::vector<Seen> corners_;

@@ -1,7 +1,6 @@
 #include "tin/delaunay/hierarchy.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "tin/base/check.h"
 #include "tin/delaunay/bulk.h"
@@ -15,15 +14,6 @@ using mesh::Mesh;
 using mesh::VertexSlot;
 
 namespace {
-
-constexpr int kBitsPerLevel = 6;
-
-std::uint64_t scramble(Point p) {
-  std::uint64_t x = static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32 | static_cast<std::uint32_t>(p.y);
-  x = (x ^ (x >> 31)) * 0x7fb5d329728ea185ULL;
-  x = (x ^ (x >> 27)) * 0x81dadef4bc2dd44dULL;
-  return x ^ (x >> 33);
-}
 
 double squared_length(const Corner& c) {
   const auto x = static_cast<double>(c.x), y = static_cast<double>(c.y);
@@ -39,14 +29,13 @@ VertexSlot nearest_corner(const Stop& stop) {
 
 }  // namespace
 
-std::size_t Hierarchy::height_of(Point p) { return static_cast<std::size_t>(std::countr_zero(scramble(p)) / kBitsPerLevel); }
-
 /// The vertex of a level nearest to where a walk to `p` stops. `from`: a vertex to start at, or kNone.
 Hierarchy::Found Hierarchy::find(const Mesh& mesh, Point p, VertexSlot from, std::uint64_t& steps) {
   if (mesh.dimension() < 2) {
     const auto line = mesh.line();
     if (line.empty()) return {VertexSlot(kNone), false};
-    const auto at = std::lower_bound(line.begin(), line.end(), p, [&](VertexSlot v, Point q) { return mesh.point(v) < q; });
+    const auto at = std::lower_bound(line.begin(), line.end(), p,
+                                     [&](VertexSlot v, Point q) { return mesh.point(v) < q; });
     const VertexSlot v = at == line.end() ? line.back() : *at;
     return {v, mesh.point(v) == p};
   }
@@ -72,9 +61,7 @@ VertexSlot Hierarchy::near(Point p, std::uint64_t& steps) const {
   return descend(p, steps, [](std::size_t, const Found&) {});
 }
 
-void Hierarchy::add(Point p, VertexSlot slot) {
-  const std::size_t height = height_of(p);
-  if (height == 0) return;
+void Hierarchy::add_to_levels(Point p, VertexSlot slot, std::size_t height) {
   if (levels_.size() < height) levels_.resize(height);
   std::vector<VertexSlot> nearest(levels_.size());
   std::uint64_t steps = 0;
@@ -93,9 +80,7 @@ void Hierarchy::add(Point p, VertexSlot slot) {
   }
 }
 
-void Hierarchy::remove(Point p) {
-  const std::size_t height = height_of(p);
-  if (height == 0) return;
+void Hierarchy::remove_from_levels(Point p, std::size_t height) {
   std::vector<VertexSlot> gone(height);
   std::uint64_t steps = 0;
   descend(p, steps, [&](std::size_t k, const Found& found) {
@@ -136,7 +121,8 @@ void Hierarchy::renumber(const std::vector<VertexSlot>& new_of_old) {
 
 std::size_t Hierarchy::bytes() const {
   std::size_t sum = levels_.capacity() * sizeof(Level);
-  for (const Level& level : levels_) sum += level.layer.mesh().bytes() + level.below.capacity() * sizeof(VertexSlot);
+  for (const Level& level : levels_)
+    sum += level.layer.mesh().bytes() + level.below.capacity() * sizeof(VertexSlot);
   return sum;
 }
 

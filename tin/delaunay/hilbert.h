@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "tin/exact/point.h"
@@ -10,9 +11,9 @@ namespace tin::delaunay {
 
 namespace internal {
 
-/// One step down four levels of the curve: from the orientation of the cell and four bits of x and of y to the eight bits of
-/// the index (low byte) and the orientation of the cell reached (high byte). An orientation is made of two bits: 1, x and y
-/// are exchanged; 2, both run backwards.
+/// One step down four levels of the curve: from the orientation of the cell and four bits of x and of y to
+/// the eight bits of the index (low byte) and the orientation of the cell reached (high byte). An orientation
+/// is made of two bits: 1, x and y are exchanged; 2, both run backwards.
 constexpr std::uint16_t hilbert_step(std::uint32_t orientation, std::uint32_t x, std::uint32_t y) {
   std::uint32_t index = 0;
   for (int level = 3; level >= 0; --level) {
@@ -39,18 +40,37 @@ inline constexpr auto kHilbertTable = make_hilbert_table();
 
 }  // namespace internal
 
-/// Position of `p` along the Hilbert curve over the lattice, below 2^60; different points have different positions.
-constexpr std::uint64_t hilbert_index(exact::Point p) {
-  const std::uint32_t x = static_cast<std::uint32_t>(p.x + exact::kLatticeHalf);
-  const std::uint32_t y = static_cast<std::uint32_t>(p.y + exact::kLatticeHalf);
-  std::uint64_t index = 0;
-  std::uint32_t orientation = 0;
-  for (int shift = 28; shift >= 0; shift -= 4) {
-    const std::uint16_t step = internal::kHilbertTable[orientation << 8 | (x >> shift & 15U) << 4 | (y >> shift & 15U)];
-    index = index << 8 | (step & 255U);
-    orientation = step >> 8;
+/// The curve through a square that holds given points, no larger than it must be: the fewer its bits, the
+/// more of them fit a sort key.
+class HilbertCurve {
+ public:
+  /// Through all points of [low, high]. Requires: low <= high in both coordinates.
+  constexpr HilbertCurve(exact::Point low, exact::Point high) : low_(low) {
+    const auto width = static_cast<std::uint32_t>(high.x - low.x),
+               height = static_cast<std::uint32_t>(high.y - low.y);
+    bits_ = static_cast<int>(std::bit_width(width | height));
   }
-  return index;
-}
+
+  /// Bits of an index: 60 at most.
+  constexpr int index_bits() const { return 2 * bits_; }
+
+  /// Position of `p` along the curve; different points have different positions.
+  constexpr std::uint64_t index(exact::Point p) const {
+    const auto x = static_cast<std::uint32_t>(p.x - low_.x), y = static_cast<std::uint32_t>(p.y - low_.y);
+    std::uint64_t index = 0;
+    std::uint32_t orientation = 0;
+    for (int shift = (bits_ - 1) & ~3; shift >= 0; shift -= 4) {
+      const std::uint16_t step =
+          internal::kHilbertTable[orientation << 8 | (x >> shift & 15U) << 4 | (y >> shift & 15U)];
+      index = index << 8 | (step & 255U);
+      orientation = step >> 8;
+    }
+    return index;
+  }
+
+ private:
+  exact::Point low_;
+  int bits_ = 0;  // of the square's side
+};
 
 }  // namespace tin::delaunay

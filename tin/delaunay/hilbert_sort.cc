@@ -13,6 +13,7 @@ using exact::Point;
 
 namespace {
 
+constexpr int kKeyBits = 32;
 constexpr std::size_t kSmall = 24;     // sorted by insertion
 constexpr int kMaxDigit = 11;          // bits: as many buckets as the caches and the TLB bear
 constexpr std::size_t kMaxBuckets = std::size_t{1} << kMaxDigit;
@@ -39,7 +40,8 @@ struct Digit {
   }
 };
 
-/// About four items to a bucket, so that the next round ends. `differ` has a bit where two keys differ, and is not 0.
+/// About four items to a bucket, so that the next round ends. `differ` has a bit where two keys differ, and
+/// is not 0.
 Digit choose_digit(std::uint32_t differ, std::size_t n) {
   const int top = 32 - std::countl_zero(differ);
   const int wanted = std::clamp(static_cast<int>(std::bit_width(n)) - 3, 3, kMaxDigit);
@@ -64,7 +66,8 @@ void sort_range(OnCurve* a, OnCurve* scratch, std::size_t n) {
   std::fill_n(ends.begin(), buckets + 1, 0);
   for (std::size_t i = 0; i < n; ++i) ++ends[digit.of(a[i]) + 1];
   for (std::size_t b = 1; b <= buckets; ++b) ends[b] += ends[b - 1];
-  for (std::size_t i = 0; i < n; ++i) scratch[ends[digit.of(a[i])]++] = a[i];  // ends[b] becomes the end of bucket b
+  for (std::size_t i = 0; i < n; ++i)
+    scratch[ends[digit.of(a[i])]++] = a[i];  // ends[b] becomes the end of bucket b
   std::copy_n(scratch, n, a);
   std::size_t begin = 0;
   for (std::size_t b = 0; b < buckets; ++b) {
@@ -73,10 +76,12 @@ void sort_range(OnCurve* a, OnCurve* scratch, std::size_t n) {
   }
 }
 
-/// The first round on several threads: each counts and scatters its part of the input into buckets common to all.
+/// The first round on several threads: each counts and scatters its part of the input into buckets common to
+/// all.
 class FirstRound {
  public:
-  FirstRound(mesh::PageVector<OnCurve>& items, mesh::PageVector<OnCurve>& scratch, Digit digit, unsigned threads)
+  FirstRound(mesh::PageVector<OnCurve>& items, mesh::PageVector<OnCurve>& scratch, Digit digit,
+             unsigned threads)
       : items_(items), scratch_(scratch), digit_(digit), threads_(threads), next_(threads) {}
 
   void run() {
@@ -108,7 +113,8 @@ class FirstRound {
   }
 
   void scatter(unsigned thread) {
-    for (std::size_t i = begin(thread); i < begin(thread + 1); ++i) scratch_[next_[thread][digit_.of(items_[i])]++] = items_[i];
+    for (std::size_t i = begin(thread); i < begin(thread + 1); ++i)
+      scratch_[next_[thread][digit_.of(items_[i])]++] = items_[i];
   }
 
   /// Sorts the buckets that begin in this thread's part.
@@ -127,30 +133,35 @@ class FirstRound {
   std::array<std::uint32_t, kMaxBuckets + 1> starts_{};
 };
 
-/// How far down positions are shifted to make keys: so that the topmost bit in which two positions differ is kept.
-int key_shift(std::span<const Point> points, unsigned threads) {
-  if (points.empty()) return 0;
-  const std::uint64_t first = hilbert_index(points[0]);
-  std::vector<std::uint64_t> differ(threads, 0);
+HilbertCurve curve_through(std::span<const Point> points, unsigned threads) {
+  struct Extent {
+    Point low, high;
+  };
+  std::vector<Extent> extents(threads, {points[0], points[0]});
   on_threads(threads, [&](unsigned thread) {
-    // The curve goes through a square of 2^k by 2^k cells without leaving it: corners of the extent tell as much as all points.
-    Point low = points[0], high = points[0];
-    for (std::size_t i = part_begin(points.size(), thread, threads); i < part_begin(points.size(), thread + 1, threads); ++i) {
+    auto [low, high] = extents[thread];
+    for (std::size_t i = part_begin(points.size(), thread, threads);
+         i < part_begin(points.size(), thread + 1, threads); ++i) {
       low = {std::min(low.x, points[i].x), std::min(low.y, points[i].y)};
       high = {std::max(high.x, points[i].x), std::max(high.y, points[i].y)};
     }
-    for (const Point p : {low, high, Point{low.x, high.y}, Point{high.x, low.y}}) differ[thread] |= hilbert_index(p) ^ first;
+    extents[thread] = {low, high};
   });
-  std::uint64_t all = 0;
-  for (const std::uint64_t bits : differ) all |= bits;
-  return std::max(0, 64 - std::countl_zero(all) - 32);
+  auto [low, high] = extents[0];
+  for (const Extent& e : extents) {
+    low = {std::min(low.x, e.low.x), std::min(low.y, e.low.y)};
+    high = {std::max(high.x, e.high.x), std::max(high.y, e.high.y)};
+  }
+  return {low, high};
 }
 
-mesh::PageVector<OnCurve> sorted_by_key(std::span<const Point> points, int shift, unsigned threads) {
+mesh::PageVector<OnCurve> sorted_by_key(std::span<const Point> points, const HilbertCurve& curve, int shift,
+                                        unsigned threads) {
   mesh::PageVector<OnCurve> items(points.size()), scratch(points.size());
   on_threads(threads, [&](unsigned thread) {
-    for (std::size_t i = part_begin(points.size(), thread, threads); i < part_begin(points.size(), thread + 1, threads); ++i) {
-      items[i] = {static_cast<std::uint32_t>(hilbert_index(points[i]) >> shift), static_cast<std::uint32_t>(i)};
+    for (std::size_t i = part_begin(points.size(), thread, threads);
+         i < part_begin(points.size(), thread + 1, threads); ++i) {
+      items[i] = {static_cast<std::uint32_t>(curve.index(points[i]) >> shift), static_cast<std::uint32_t>(i)};
     }
   });
   const std::uint32_t differ = differing_bits(items.data(), items.size());
@@ -159,27 +170,25 @@ mesh::PageVector<OnCurve> sorted_by_key(std::span<const Point> points, int shift
   return scratch;
 }
 
-/// Sorts points with one key, which may differ further down: a second key of 32 bits reaches the end.
-void refine(std::span<const Point> points, std::span<OnCurve> run) {
-  std::vector<Point> own;
-  std::vector<std::uint32_t> indices;
-  for (const OnCurve& item : run) {
-    own.push_back(points[item.index]);
-    indices.push_back(item.index);
-  }
-  const auto sorted = hilbert_sorted(own);
-  for (std::size_t i = 0; i < run.size(); ++i) run[i].index = indices[sorted[i].index];
+/// Sorts points with one key by the rest of their positions, which fits another.
+void refine(std::span<const Point> points, const HilbertCurve& curve, std::span<OnCurve> run) {
+  const std::uint32_t key = run[0].key;
+  for (OnCurve& item : run) item.key = static_cast<std::uint32_t>(curve.index(points[item.index]));
+  std::sort(run.begin(), run.end(), before);
+  for (OnCurve& item : run) item.key = key;
 }
 
 }  // namespace
 
 mesh::PageVector<OnCurve> hilbert_sorted(std::span<const Point> points, unsigned threads) {
-  const int shift = key_shift(points, threads);
-  auto items = sorted_by_key(points, shift, threads);
+  if (points.empty()) return {};
+  const HilbertCurve curve = curve_through(points, threads);
+  const int shift = std::max(0, curve.index_bits() - kKeyBits);
+  auto items = sorted_by_key(points, curve, shift, threads);
   std::size_t begin = 0;
   for (std::size_t i = 1; shift > 0 && i <= items.size(); ++i) {
     if (i < items.size() && items[i].key == items[begin].key) continue;
-    if (i - begin > 1) refine(points, std::span(items).subspan(begin, i - begin));
+    if (i - begin > 1) refine(points, curve, std::span(items).subspan(begin, i - begin));
     begin = i;
   }
   return items;

@@ -10,7 +10,7 @@
 namespace tin::delaunay {
 
 struct OnCurve {
-  std::uint32_t key;    // the 32 bits of the position on the curve in which the sorted points first differ
+  std::uint32_t key;    // the top 32 bits of the position on the curve through all of the points
   std::uint32_t index;  // of the point in the input
 };
 

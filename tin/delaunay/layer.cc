@@ -32,7 +32,8 @@ Layer::Inserted Layer::insert_below_plane(Point p) {
   const auto at = std::lower_bound(line.begin(), line.end(), p,
                                    [this](VertexSlot v, Point q) { return mesh_.point(v) < q; });
   if (at != line.end() && mesh_.point(*at) == p) return {*at, false};
-  const bool leaves_line = line.size() >= 2 && orientation(mesh_.point(line.front()), mesh_.point(line.back()), p) != 0;
+  const bool leaves_line =
+      line.size() >= 2 && orientation(mesh_.point(line.front()), mesh_.point(line.back()), p) != 0;
   const VertexSlot v = mesh_.add_vertex(p);
   if (leaves_line) {
     raise_to_plane(v);
@@ -46,8 +47,10 @@ Layer::Inserted Layer::insert_below_plane(Point p) {
 void Layer::raise_to_plane(VertexSlot apex) {
   std::vector<VertexSlot> line;
   line.swap(mesh_.mutable_line());
-  if (orientation(mesh_.point(line[0]), mesh_.point(line[1]), mesh_.point(apex)) < 0) std::reverse(line.begin(), line.end());
-  // Triangles (inf, b, a) over the hull edges a -> b, counter-clockwise: along the line, then line.back() -> apex -> line[0].
+  if (orientation(mesh_.point(line[0]), mesh_.point(line[1]), mesh_.point(apex)) < 0)
+    std::reverse(line.begin(), line.end());
+  // Triangles (inf, b, a) over the hull edges a -> b, counter-clockwise: along the line, then line.back() ->
+  // apex -> line[0].
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const TriangleSlot inner = mesh_.add_triangle(line[i], line[i + 1], apex);
     const TriangleSlot outer = mesh_.add_triangle(kInfinite, line[i + 1], line[i]);
@@ -91,7 +94,8 @@ void Layer::drop_to_line(VertexSlot gone) {
   for (std::uint32_t i = 1; i < mesh_.vertex_slots(); ++i) {
     if (mesh_.is_alive(VertexSlot(i))) line.push_back(VertexSlot(i));
   }
-  std::sort(line.begin(), line.end(), [this](VertexSlot a, VertexSlot b) { return mesh_.point(a) < mesh_.point(b); });
+  std::sort(line.begin(), line.end(),
+            [this](VertexSlot a, VertexSlot b) { return mesh_.point(a) < mesh_.point(b); });
 }
 
 }  // namespace tin::delaunay

@@ -1,5 +1,6 @@
-// A Delaunay triangulation that can be edited but has no idea where anything is: a mesh of any dimension with the scratch
-// space for insertion and removal. A Triangulation is one of these with location on top; so is each of its coarser levels.
+// A Delaunay triangulation that can be edited but has no idea where anything is: a mesh of any dimension with
+// the scratch space for insertion and removal. A Triangulation is one of these with location on top; so is
+// each of its coarser levels.
 #pragma once
 
 #include <span>

@@ -14,8 +14,8 @@ using mesh::VertexSlot;
 
 namespace {
 
-constexpr double kVerticesPerCell = 1.5;           // finer is hardly quicker, and keeps no 72 bytes per vertex
-constexpr std::uint8_t kCrowd = 64;                // vertices in a cell from which on the hierarchy is the quicker way
+constexpr double kVerticesPerCell = 1.5;  // finer is hardly quicker, and keeps no 72 bytes per vertex
+constexpr std::uint8_t kCrowd = 64;       // vertices in a cell from which on the hierarchy is the quicker way
 constexpr std::uint32_t kCrowded = kNone - 1;      // in a cell without a hint
 
 /// Calls f for each of `count` vertices: all slots, or else the alive ones.
@@ -55,11 +55,13 @@ void StartGrid::fit(const Mesh& mesh, std::size_t vertices) {
   reach_ = static_cast<std::int64_t>(4 * side) + 1;
 }
 
-/// At most as many cells as whole sides fit, so that the product of both counts stays near the number of vertices.
+/// At most as many cells as whole sides fit, so that the product of both counts stays near the number of
+/// vertices.
 StartGrid::Axis StartGrid::make_axis(std::int64_t low, std::int64_t high, double side) {
   Axis axis{low, high - low, 1, 0};
   axis.count = static_cast<std::uint32_t>(std::max(1.0, double(axis.last + 1) / side));
-  // Rounded down, so that the last unit falls into the last cell. Fits: an axis has fewer than 2^31 units and cells.
+  // Rounded down, so that the last unit falls into the last cell. Fits: an axis has fewer than 2^31 units and
+  // cells.
   axis.scale = (std::uint64_t{axis.count} << 32) / static_cast<std::uint64_t>(axis.last + 1);
   return axis;
 }
@@ -74,7 +76,8 @@ void StartGrid::lay_out(const Mesh& mesh, std::size_t vertices) {
     if (count[c] < kCrowd) ++count[c];
   });
   hints_.resize(count.size());
-  std::transform(count.begin(), count.end(), hints_.begin(), [](std::uint8_t n) { return n == kCrowd ? kCrowded : kNone; });
+  std::transform(count.begin(), count.end(), hints_.begin(),
+                 [](std::uint8_t n) { return n == kCrowd ? kCrowded : kNone; });
 }
 
 void StartGrid::fill(const Mesh& mesh) {

@@ -8,9 +8,13 @@
 
 namespace tin::delaunay {
 
-/// A hint is never wrong, only far: the walk that starts from it decides. Hints are not kept up to date when triangles go: a
-/// slot used again mostly serves nearby, and one that does not is seen to be far. Cells that hold many vertices have no hint,
-/// nor have empty regions; there the hierarchy is asked. Reading is const and safe beside other readers.
+/// How many triangles a walk from a hint may cross before the hierarchy is asked.
+inline constexpr std::uint32_t kPatience = 64;
+
+/// A hint is never wrong, only far: the walk that starts from it decides. Hints are not kept up to date when
+/// triangles go: a slot used again mostly serves nearby, and one that does not is seen to be far. Cells that
+/// hold many vertices have no hint, nor have empty regions; there the hierarchy is asked. Reading is const
+/// and safe beside other readers.
 class StartGrid {
  public:
   /// Remembers `t` for the place `p`. Makes the grid anew when the mesh has outgrown it or left it too large.
@@ -20,11 +24,12 @@ class StartGrid {
     lay_out(mesh, mesh.vertex_count());
     fill(mesh);
   }
-  /// The two halves of that. The first sees only points, so it may run while a mesh is built: then `count` is that of all slots,
-  /// which the mesh does not yet know to be alive. The second needs the triangles.
+  /// The two halves of that. The first sees only points, so it may run while a mesh is built: then `count` is
+  /// that of all slots, which the mesh does not yet know to be alive. The second needs the triangles.
   void lay_out(const mesh::Mesh& mesh, std::size_t count);
   void fill(const mesh::Mesh& mesh);
-  /// A walk from the hint for `p` was long: the cell has become crowded, and gives none until the grid is made anew.
+  /// A walk from the hint for `p` was long: the cell has become crowded, and gives none until the grid is
+  /// made anew.
   void give_up(exact::Point p);
   /// Whether remember() or a removal has left the grid of the wrong size.
   bool outdated(const mesh::Mesh& mesh) const {
@@ -39,7 +44,9 @@ class StartGrid {
     if (!hints_.empty()) __builtin_prefetch(&hints_[cell(p)]);
   }
   /// The remembered triangle's slot, unchecked; kNone without one.
-  mesh::TriangleSlot hint(exact::Point p) const { return mesh::TriangleSlot(hints_.empty() ? mesh::kNone : hints_[cell(p)]); }
+  mesh::TriangleSlot hint(exact::Point p) const {
+    return mesh::TriangleSlot(hints_.empty() ? mesh::kNone : hints_[cell(p)]);
+  }
 
   std::size_t bytes() const { return hints_.capacity() * sizeof(std::uint32_t); }
 

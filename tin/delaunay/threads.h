@@ -9,8 +9,9 @@
 
 namespace tin::delaunay {
 
-/// Calls f(0) .. f(threads - 1) at the same time, f(0) on this thread, and waits for all; one after the other where the system
-/// gives no more threads. What a call throws (memory may run out) is thrown here when all have ended, the first one's of several.
+/// Calls f(0) .. f(threads - 1) at the same time, f(0) on this thread, and waits for all; one after the other
+/// where the system gives no more threads. What a call throws (memory may run out) is thrown here when all
+/// have ended, the first one's of several.
 template <class F>
 void on_threads(unsigned threads, const F& f) {
   std::vector<std::exception_ptr> thrown(threads);
@@ -38,6 +39,8 @@ void on_threads(unsigned threads, const F& f) {
 }
 
 /// The part of 0..count that thread `i` of `threads` works on begins here (and ends where part i + 1 begins).
-constexpr std::size_t part_begin(std::size_t count, unsigned i, unsigned threads) { return count * i / threads; }
+constexpr std::size_t part_begin(std::size_t count, unsigned i, unsigned threads) {
+  return count * i / threads;
+}
 
 }  // namespace tin::delaunay

@@ -10,10 +10,6 @@ using mesh::kNone;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
-namespace {
-constexpr std::uint32_t kPatience = 64;  // triangles that a walk from the grid's hint may cross before the hierarchy is asked
-}
-
 Triangulation::Inserted Triangulation::insert(Point p) {
   if (mesh().dimension() < 2) return insert_at(p, {});
   std::uint64_t steps = 0;

@@ -1,32 +1,41 @@
 #include "tin/exact/lifted.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 namespace tin::exact {
 namespace {
 
-bool is_larger(const Lifted& a, const Lifted& b) { return a.x != b.x ? a.x > b.x : a.y > b.y; }
+/// Ordered as the points are by (x, y): differences stay below 2^31.
+std::int64_t key(const Lifted& q) { return q.x * (std::int64_t{1} << 31) + q.y; }
+
+/// Four collinear points: the parity of the permutation that orders them.
+[[gnu::cold, gnu::noinline]] int sign_on_line(std::array<std::int64_t, 4> keys) {
+  int parity = 1;
+  for (const auto& [i, j] : {std::pair{0U, 1U}, {2U, 3U}, {0U, 2U}, {1U, 3U}, {1U, 2U}}) {
+    if (keys[j] <= keys[i]) continue;
+    std::swap(keys[i], keys[j]);
+    parity = -parity;
+  }
+  return parity;
+}
 
 }  // namespace
 
+/// The largest of four points on a circle decides, since no three of them are collinear; if its coefficient
+/// is zero, all four are. Grids ask this at every other test and its answers follow no pattern, hence no
+/// branches.
 int tie_sign(const Lifted& a, const Lifted& b, const Lifted& c, const Lifted& d) {
-  std::array<const Lifted*, 4> descending{&a, &b, &c, &d};
-  int parity = 1;
-  for (const auto& [i, j] : {std::pair{0U, 1U}, {2U, 3U}, {0U, 2U}, {1U, 3U}, {1U, 2U}}) {
-    if (!is_larger(*descending[j], *descending[i])) continue;
-    std::swap(descending[i], descending[j]);
-    parity = -parity;
-  }
-  for (const Lifted* q : descending) {
-    std::int64_t coefficient = 0;
-    if (q == &a) coefficient = orientation(d, b, c);
-    if (q == &b) coefficient = orientation(a, d, c);
-    if (q == &c) coefficient = orientation(a, b, d);
-    if (q == &d) coefficient = -orientation(a, b, c);
-    if (coefficient != 0) return coefficient > 0 ? 1 : -1;
-  }
-  return parity;
+  const std::int64_t of_a = key(a), of_b = key(b), of_c = key(c), of_d = key(d);
+  const bool a_or_b = std::max(of_a, of_b) > std::max(of_c, of_d);
+  const bool a_leads = a_or_b & (of_a > of_b), b_leads = a_or_b & (of_a <= of_b);
+  const bool c_leads = !a_or_b & (of_c > of_d), d_leads = !a_or_b & (of_c <= of_d);
+  // d takes the place of the largest.
+  const std::int64_t turn = orientation(a_leads ? d : a, b_leads ? d : b, c_leads ? d : c);
+  if (turn == 0) [[unlikely]] return sign_on_line({of_a, of_b, of_c, of_d});
+  return (turn > 0) == d_leads ? -1 : 1;
 }
 
 }  // namespace tin::exact

@@ -43,7 +43,8 @@ double to_double(Uint128 value) {
 
 XY place(const Lifted& q) { return {q.x, q.y}; }
 
-/// Barycentric coefficient of the origin at the corner `q` of the ear, times the ear's orientation; 0 if q is no corner.
+/// Barycentric coefficient of the origin at the corner `q` of the ear, times the ear's orientation; 0 if q is
+/// no corner.
 std::int64_t coefficient(const Corners& ear, const XY& q) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Lifted &next = ear[(i + 1) % 3], &last = ear[(i + 2) % 3];
@@ -56,7 +57,8 @@ std::int64_t coefficient(const Corners& ear, const XY& q) {
 
 Power make_power(Int128 in_circle, std::int64_t orientation) {
   TIN_DCHECK(orientation > 0 && in_circle >= 0);
-  return {in_circle, orientation, to_double(static_cast<Uint128>(in_circle)) / static_cast<double>(orientation)};
+  return {in_circle, orientation,
+          to_double(static_cast<Uint128>(in_circle)) / static_cast<double>(orientation)};
 }
 
 Power power(const Corners& ear) {
@@ -64,7 +66,8 @@ Power power(const Corners& ear) {
 }
 
 PowerMinors power_minors(const Lifted& a, const Lifted& b) {
-  return {Int128{a.y} * b.z - Int128{a.z} * b.y, Int128{a.z} * b.x - Int128{a.x} * b.z, a.x * b.y - a.y * b.x};
+  return {Int128{a.y} * b.z - Int128{a.z} * b.y, Int128{a.z} * b.x - Int128{a.x} * b.z,
+          a.x * b.y - a.y * b.x};
 }
 
 Int128 in_circle_determinant(const PowerMinors& minors, const Lifted& c) {
@@ -72,7 +75,8 @@ Int128 in_circle_determinant(const PowerMinors& minors, const Lifted& c) {
 }
 
 std::optional<int> compare_in_128_bits(const Power& a, const Power& b) {
-  if (!fits_128_bits(a.in_circle, b.orientation) || !fits_128_bits(b.in_circle, a.orientation)) return std::nullopt;
+  if (!fits_128_bits(a.in_circle, b.orientation) || !fits_128_bits(b.in_circle, a.orientation))
+    return std::nullopt;
   const Uint128 left = static_cast<Uint128>(a.in_circle) * static_cast<Uint128>(b.orientation);
   const Uint128 right = static_cast<Uint128>(b.in_circle) * static_cast<Uint128>(a.orientation);
   return (left > right) - (left < right);
@@ -84,7 +88,8 @@ int compare_by_gmp(const Power& a, const Power& b) {
   return (sign > 0) - (sign < 0);
 }
 
-int compare_perturbed(const Corners& a, std::int64_t orientation_a, const Corners& b, std::int64_t orientation_b) {
+int compare_perturbed(const Corners& a, std::int64_t orientation_a, const Corners& b,
+                      std::int64_t orientation_b) {
   std::array<XY, 6> descending{place(a[0]), place(a[1]), place(a[2]), place(b[0]), place(b[1]), place(b[2])};
   std::sort(descending.begin(), descending.end(), std::greater<>());
   for (const XY& q : descending) {

@@ -1,12 +1,13 @@
-// The power of a removed point with respect to the circle of an ear, and the order of two powers (Devillers 2002,
-// sections 2.4 and 3). The removed point is the origin of the lifted corners.
+// The power of a removed point with respect to the circle of an ear, and the order of two powers (Devillers
+// 2002, sections 2.4 and 3). The removed point is the origin of the lifted corners.
 //
-// A comparison goes through stages, each of which answers or passes on: floating point with an error bound; products of
-// 128 bits, where they fit; GMP, for any; the infinitesimals, for equal powers.
+// A comparison goes through stages, each of which answers or passes on: floating point with an error bound;
+// products of 128 bits, where they fit; GMP, for any; the infinitesimals, for equal powers.
 //
-// There is no static filter in front (a bound that is absolute and known when compiling). The cross products reach 2^187,
-// so their doubles may be wrong by 2^137, and a difference as large as that needs stars of some seven million lattice
-// steps, seven kilometres at the usual 1 mm. The semi-static bound costs one multiplication and answers at every scale.
+// There is no static filter in front (a bound that is absolute and known when compiling). The cross products
+// reach 2^187, so their doubles may be wrong by 2^137, and a difference as large as that needs stars of some
+// seven million lattice steps, seven kilometres at the usual 1 mm. The semi-static bound costs one
+// multiplication and answers at every scale.
 #pragma once
 
 #include <array>
@@ -27,8 +28,8 @@ struct Power {
 /// The corners of an ear, counter-clockwise.
 using Corners = std::array<Lifted, 3>;
 
-/// The part of a power that two corners determine: with it the power for another third corner costs 7 multiplications
-/// instead of 15 (section 3.1).
+/// The part of a power that two corners determine: with it the power for another third corner costs 7
+/// multiplications instead of 15 (section 3.1).
 struct PowerMinors {
   Int128 x = 0, y = 0;
   std::int64_t z = 0;
@@ -54,8 +55,9 @@ std::optional<int> compare_in_128_bits(const Power& a, const Power& b);
 /// Stage 3: the sign of a - b by GMP.
 int compare_by_gmp(const Power& a, const Power& b);
 
-/// Stage 4: the sign of the difference of two *perturbed* powers that are equal without perturbation: the barycentric
-/// coefficients of the origin at the largest corner where they differ. 0 only for equal ears.
-int compare_perturbed(const Corners& a, std::int64_t orientation_a, const Corners& b, std::int64_t orientation_b);
+/// Stage 4: the sign of the difference of two *perturbed* powers that are equal without perturbation: the
+/// barycentric coefficients of the origin at the largest corner where they differ. 0 only for equal ears.
+int compare_perturbed(const Corners& a, std::int64_t orientation_a, const Corners& b,
+                      std::int64_t orientation_b);
 
 }  // namespace tin::exact

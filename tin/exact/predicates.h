@@ -26,8 +26,8 @@ constexpr std::int64_t orientation(Point a, Point b, Point c) {
   return bx * cy - by * cx;
 }
 
-/// The in-circle determinant: positive when `p` lies inside the circle of the counter-clockwise a, b, c, zero on
-/// it. Divided by orientation(a, b, c) it is minus the power of `p` with respect to the circle.
+/// The in-circle determinant: positive when `p` lies inside the circle of the counter-clockwise a, b, c, zero
+/// on it. Divided by orientation(a, b, c) it is minus the power of `p` with respect to the circle.
 constexpr Int128 in_circle_determinant(Point a, Point b, Point c, Point p) {
   const std::int64_t ax = std::int64_t{a.x} - p.x, ay = std::int64_t{a.y} - p.y;
   const std::int64_t bx = std::int64_t{b.x} - p.x, by = std::int64_t{b.y} - p.y;
@@ -36,9 +36,10 @@ constexpr Int128 in_circle_determinant(Point a, Point b, Point c, Point p) {
          Int128{cx * cx + cy * cy} * (ax * by - ay * bx);
 }
 
-/// The tie rule: whether `p`, on the circle of the counter-clockwise a, b, c and distinct from them, counts as inside.
-/// The coefficient of e(q) in the perturbed determinant is, but for a positive factor, the orientation in which
-/// `p` takes the place of q; that of e(p) is negative. The largest point with a coefficient decides.
+/// The tie rule: whether `p`, on the circle of the counter-clockwise a, b, c and distinct from them, counts
+/// as inside. The coefficient of e(q) in the perturbed determinant is, but for a positive factor, the
+/// orientation in which `p` takes the place of q; that of e(p) is negative. The largest point with a
+/// coefficient decides.
 bool tie_is_inside(Point a, Point b, Point c, Point p);
 
 /// Whether `p` lies inside the perturbed circle of the counter-clockwise a, b, c. Requires: distinct points.

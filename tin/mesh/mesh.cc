@@ -5,7 +5,8 @@
 namespace tin::mesh {
 namespace {
 
-/// Room for one more element: a quarter more when it is full. Twice as much would be quicker by a hair, and wasted for long.
+/// Room for one more element: a quarter more when it is full. Twice as much would be quicker by a hair, and
+/// wasted for long.
 template <class T>
 void make_room(PageVector<T>& array) {
   if (array.size() == array.capacity()) array.reserve(array.size() + array.size() / 4 + 16);
@@ -22,7 +23,8 @@ int Mesh::dimension() const {
 }
 
 std::size_t Mesh::finite_triangle_count() const {
-  // Euler on the sphere: n + 1 vertices (one infinite) make 2n - 2 triangles, h of them infinite; h is found by a walk.
+  // Euler on the sphere: n + 1 vertices (one infinite) make 2n - 2 triangles, h of them infinite; h is found
+  // by a walk.
   if (dimension() < 2) return 0;
   std::size_t hull = 0;
   const TriangleSlot first = triangle_at(kInfinite);
@@ -41,7 +43,8 @@ void Mesh::link(VertexSlot v, std::vector<HalfEdge>& out) const {
   do {
     const int i = index_of(t, v);
     const HalfEdge edge(t, i);
-    // The walk around needs one triangle after the other; what its callers touch next can be fetched meanwhile.
+    // The walk around needs one triangle after the other; what its callers touch next can be fetched
+    // meanwhile.
     prefetch(twin(edge).triangle());
     prefetch(origin(edge));
     out.push_back(edge);
@@ -64,13 +67,6 @@ VertexSlot Mesh::add_vertex(exact::Point p, VertexSlot near) {
   return VertexSlot(static_cast<std::uint32_t>(points_.size() - 1));
 }
 
-void Mesh::release_vertex(VertexSlot v) {
-  TIN_DCHECK(v != kInfinite && is_alive(v));
-  --vertex_count_;
-  star_[v.value()] = kDead;
-  free_vertices_.add(v.value());
-}
-
 TriangleSlot Mesh::claim_triangle(TriangleSlot near) {
   ++triangle_count_;
   if (!free_triangles_.empty()) return TriangleSlot(free_triangles_.take_near(near.value()));
@@ -83,12 +79,6 @@ TriangleSlot Mesh::add_triangle(VertexSlot a, VertexSlot b, VertexSlot c) {
   const TriangleSlot t = claim_triangle(TriangleSlot(0));
   set_triangle(t, a, b, c);
   return t;
-}
-
-void Mesh::release_triangle(TriangleSlot t) {
-  triangles_[t.value()].vertices[0] = VertexSlot(kNone);
-  free_triangles_.add(t.value());
-  --triangle_count_;
 }
 
 void Mesh::clear_triangles() {

@@ -1,9 +1,9 @@
 // The triangle mesh: flat arrays of triangles and vertices, 32-bit links, one infinite vertex for the hull.
 //
-// A mesh of dimension 2 tiles the whole sphere: each hull edge bears an infinite triangle, so every triangle has
-// three neighbours. Meshes of fewer dimensions (no, one, two or only collinear vertices) have no triangles; their
-// vertices stand in a line, ordered by x, then y. The mesh knows links, not geometry: what is Delaunay is
-// decided in delaunay/ and removal/.
+// A mesh of dimension 2 tiles the whole sphere: each hull edge bears an infinite triangle, so every triangle
+// has three neighbours. Meshes of fewer dimensions (no, one, two or only collinear vertices) have no
+// triangles; their vertices stand in a line, ordered by x, then y. The mesh knows links, not geometry: what
+// is Delaunay is decided in delaunay/ and removal/.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ using TriangleSlot = base::StrongId<struct TriangleSlotTag, std::uint32_t>;
 inline constexpr VertexSlot kInfinite{0};
 inline constexpr std::uint32_t kNone = 0xffffffffU;
 
-// Out of small tables in a word: which corner comes next is as good as random, and a branch on it would often be mispredicted.
+// Out of small tables in a word: which corner comes next is as good as random, and a branch on it would often
+// be mispredicted.
 constexpr int next3(int i) { return 0b00'10'01 >> 2 * i & 3; }
 constexpr int prev3(int i) { return 0b01'00'10 >> 2 * i & 3; }
 
@@ -63,7 +64,8 @@ class Mesh {
  public:
   Mesh();
 
-  // Reading ---------------------------------------------------------------------------------------------------
+  // Reading
+  // ---------------------------------------------------------------------------------------------------
 
   /// -1 without vertices, 0 with one, 1 when all are collinear, else 2.
   int dimension() const;
@@ -91,13 +93,15 @@ class Mesh {
   /// Index of `v` in `t`. Requires: it is there.
   int index_of(TriangleSlot t, VertexSlot v) const;
 
-  /// The link of `v`, counter-clockwise: for each triangle of its star the edge opposite to `v`. Requires dimension() == 2.
+  /// The link of `v`, counter-clockwise: for each triangle of its star the edge opposite to `v`. Requires
+  /// dimension() == 2.
   void link(VertexSlot v, std::vector<HalfEdge>& out) const;
 
   /// The vertices in order when dimension() < 2.
   std::span<const VertexSlot> line() const { return line_; }
 
-  // Writing: building blocks for delaunay/ and removal/, which keep the invariants --------------------------------
+  // Writing: building blocks for delaunay/ and removal/, which keep the invariants
+  // --------------------------------
 
   /// Uses a free slot again, the one nearest to `near`; without free slots the arrays grow.
   VertexSlot add_vertex(exact::Point p, VertexSlot near = kInfinite);
@@ -119,18 +123,21 @@ class Mesh {
   void clear_triangles();
   void reserve(std::size_t vertices);
 
-  /// Bulk building of an empty mesh: makes vertices 1..count, whose points the caller then sets, and room for twice as many
-  /// triangles, which the caller writes with write_triangle(). Again with a smaller count, the first points stay.
+  /// Bulk building of an empty mesh: makes vertices 1..count, whose points the caller then sets, and room for
+  /// twice as many triangles, which the caller writes with write_triangle(). Again with a smaller count, the
+  /// first points stay.
   void begin_bulk(std::size_t count);
   void set_point(VertexSlot v, exact::Point p) { points_[v.value()] = p; }
-  /// All of the 2 * count triangles are written but those in `unused` (all of them when the vertices are collinear).
+  /// All of the 2 * count triangles are written but those in `unused` (all of them when the vertices are
+  /// collinear).
   void end_bulk(std::span<const TriangleSlot> unused);
 
   /// Stores the vertices in the given order, without gaps, and the triangles after them.
   /// Requires: `order` holds each alive finite vertex once.
   Renumbering renumber(std::span<const VertexSlot> order);
 
-  // Memory -------------------------------------------------------------------------------------------------------
+  // Memory
+  // -------------------------------------------------------------------------------------------------------
 
   /// What the arrays occupy.
   std::size_t bytes() const;
@@ -140,12 +147,15 @@ class Mesh {
   }
   void prefetch_point(VertexSlot v) const { __builtin_prefetch(&points_[v.value()]); }
   void prefetch(TriangleSlot t) const { __builtin_prefetch(&triangles_[t.value()]); }
-  /// What a walk from `t` likely touches, without a look at `t`: in a mesh stored along a curve, triangles are twice as far in
-  /// their array as their vertices are in theirs. Touches nothing, so that addresses beyond the arrays do no harm.
+  /// What a walk from `t` likely touches, without a look at `t`: in a mesh stored along a curve, triangles
+  /// are twice as far in their array as their vertices are in theirs. Touches nothing, so that addresses
+  /// beyond the arrays do no harm.
   void prefetch_around(TriangleSlot t) const {
     const auto triangle = reinterpret_cast<std::uintptr_t>(triangles_.data()) + t.value() * sizeof(Triangle);
-    const auto point = reinterpret_cast<std::uintptr_t>(points_.data()) + t.value() / 2 * sizeof(exact::Point);
-    for (const std::uintptr_t line : {std::uintptr_t{0} - kCacheLine, std::uintptr_t{0}, std::uintptr_t{kCacheLine}}) {
+    const auto point =
+        reinterpret_cast<std::uintptr_t>(points_.data()) + t.value() / 2 * sizeof(exact::Point);
+    for (const std::uintptr_t line :
+         {std::uintptr_t{0} - kCacheLine, std::uintptr_t{0}, std::uintptr_t{kCacheLine}}) {
       __builtin_prefetch(reinterpret_cast<const void*>(triangle + line));
       __builtin_prefetch(reinterpret_cast<const void*>(point + line));
     }
@@ -178,12 +188,26 @@ inline bool Mesh::is_infinite(TriangleSlot t) const {
 inline int Mesh::index_of(TriangleSlot t, VertexSlot v) const {
   const auto& vertices = triangle(t).vertices;
   TIN_DCHECK(vertices[0] == v || vertices[1] == v || vertices[2] == v);
-  return static_cast<int>(vertices[1] == v) + 2 * static_cast<int>(vertices[2] == v);  // as next3(): no branches
+  return static_cast<int>(vertices[1] == v) +
+         2 * static_cast<int>(vertices[2] == v);  // as next3(): no branches
 }
 
 inline void Mesh::set_triangle(TriangleSlot t, VertexSlot a, VertexSlot b, VertexSlot c) {
   triangles_[t.value()].vertices = {a, b, c};
   star_[a.value()] = star_[b.value()] = star_[c.value()] = t.value();
+}
+
+inline void Mesh::release_vertex(VertexSlot v) {
+  TIN_DCHECK(v != kInfinite && is_alive(v));
+  --vertex_count_;
+  star_[v.value()] = kDead;
+  free_vertices_.add(v.value());
+}
+
+inline void Mesh::release_triangle(TriangleSlot t) {
+  triangles_[t.value()].vertices[0] = VertexSlot(kNone);
+  free_triangles_.add(t.value());
+  --triangle_count_;
 }
 
 inline void Mesh::join(HalfEdge a, HalfEdge b) {

@@ -12,7 +12,8 @@ namespace tin::mesh {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
-constexpr std::size_t kMapped = 2 * kHugePage;  // blocks of this size or more are mapped, smaller ones come from the heap
+constexpr std::size_t kMapped =
+    2 * kHugePage;  // blocks of this size or more are mapped, smaller ones come from the heap
 constexpr std::align_val_t kCacheLine{64};
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -24,7 +25,8 @@ constexpr bool kKeepsPages = true;
 std::size_t whole_pages(std::size_t bytes) { return (bytes + kHugePage - 1) / kHugePage * kHugePage; }
 
 char* map(std::size_t size) {
-  void* const mapped = ::mmap(nullptr, size + kHugePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  void* const mapped =
+      ::mmap(nullptr, size + kHugePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (mapped == MAP_FAILED) throw std::bad_alloc();
   char* const begin = static_cast<char*>(mapped);
   const std::size_t skip = (kHugePage - reinterpret_cast<std::uintptr_t>(begin) % kHugePage) % kHugePage;
@@ -88,7 +90,8 @@ class KeptPages {
     std::size_t size;
   };
   std::mutex mutex_;
-  std::array<Block, kMostPagesKept / kMapped> blocks_{};  // a block is no smaller: they never run out but for remainders
+  std::array<Block, kMostPagesKept / kMapped>
+      blocks_{};  // a block is no smaller: they never run out but for remainders
   std::size_t count_ = 0, bytes_ = 0;
 };
 

@@ -1,9 +1,10 @@
-// Memory for the mesh's big arrays: asked from the system in huge pages where it gives them, since a random access
-// to a large mesh costs a TLB miss per 4 KiB page, and left uninitialised, since bulk building writes every element.
+// Memory for the mesh's big arrays: asked from the system in huge pages where it gives them, since a random
+// access to a large mesh costs a TLB miss per 4 KiB page, and left uninitialised, since bulk building writes
+// every element.
 //
-// Blocks that are given back are kept for the next arrays, up to a limit: a page that is new to the process must be found and
-// cleared by the system, which can take as long as building the mesh on it. The system is told that it may take
-// kept pages away when memory is short.
+// Blocks that are given back are kept for the next arrays, up to a limit: a page that is new to the process
+// must be found and cleared by the system, which can take as long as building the mesh on it. The system is
+// told that it may take kept pages away when memory is short.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +23,8 @@ void free_pages(void* memory, std::size_t bytes) noexcept;
 inline constexpr std::size_t kMostPagesKept = std::size_t{512} << 20;
 std::size_t kept_pages() noexcept;
 
-/// An allocator over allocate_pages() whose vector::resize() leaves new elements of plain types as they are: unknown.
+/// An allocator over allocate_pages() whose vector::resize() leaves new elements of plain types as they are:
+/// unknown.
 template <class T>
 class PageAllocator {
  public:

@@ -1,5 +1,6 @@
-// Renumbering: after mass deletion the arrays have gaps, after growth in random order what is near on the ground is far in
-// memory. Storing vertices in the order of a space-filling curve, and triangles after their vertices, mends both.
+// Renumbering: after mass deletion the arrays have gaps, after growth in random order what is near on the
+// ground is far in memory. Storing vertices in the order of a space-filling curve, and triangles after their
+// vertices, mends both.
 #include <algorithm>
 
 #include "tin/mesh/mesh.h"

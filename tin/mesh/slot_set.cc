@@ -6,12 +6,10 @@
 
 namespace tin::mesh {
 
-void SlotSet::add(std::uint32_t slot) {
-  grow(slot);
-  ++size_;
-  std::uint32_t i = slot;
-  for (Words& words : levels_) {
-    std::uint64_t& word = words[i / 64];
+/// The i-th word of level 0 has a bit now.
+void SlotSet::add_above(std::uint32_t i) {
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    std::uint64_t& word = levels_[level][i / 64];
     const bool known_above = word != 0;
     word |= std::uint64_t{1} << i % 64;
     if (known_above) return;
@@ -21,7 +19,6 @@ void SlotSet::add(std::uint32_t slot) {
 
 /// Makes room for `slot`: each level twice as large as needed, and a last level of one word.
 void SlotSet::grow(std::uint32_t slot) {
-  if (!levels_.empty() && slot / 64 < levels_[0].size()) return;
   std::size_t words = 2 * (std::size_t{slot} / 64 + 1);
   for (std::size_t level = 0;; ++level) {
     if (level == levels_.size()) {

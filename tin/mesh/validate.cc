@@ -19,7 +19,8 @@ int turn(Point a, Point b, Point c) {
   return sgn(u * t - v * s);
 }
 
-/// Sign of the 3 x 3 determinant of rows (x, y, x^2 + y^2) relative to d, in floating point with a bound, or by GMP.
+/// Sign of the 3 x 3 determinant of rows (x, y, x^2 + y^2) relative to d, in floating point with a bound, or
+/// by GMP.
 int circle_sign(Point a, Point b, Point c, Point d) {
   const std::array<Point, 3> row{a, b, c};
   std::array<double, 3> x{}, y{}, s{};
@@ -44,15 +45,17 @@ int circle_sign(Point a, Point b, Point c, Point d) {
   return sgn(exact);
 }
 
-/// Sign of the lifted determinant of a, b, c (counter-clockwise) and d when each lift gets an infinitesimal that grows
-/// with (x, y): expanded by the lifts, each infinitesimal's coefficient is a turn of the other three points.
+/// Sign of the lifted determinant of a, b, c (counter-clockwise) and d when each lift gets an infinitesimal
+/// that grows with (x, y): expanded by the lifts, each infinitesimal's coefficient is a turn of the other
+/// three points.
 int perturbed_circle_sign(Point a, Point b, Point c, Point d) {
   if (const int sign = circle_sign(a, b, c, d); sign != 0) return sign;
   struct Term {
     Point point;
     int coefficient;
   };
-  std::array<Term, 4> terms{{{a, turn(b, c, d)}, {b, -turn(a, c, d)}, {c, turn(a, b, d)}, {d, -turn(a, b, c)}}};
+  std::array<Term, 4> terms{
+      {{a, turn(b, c, d)}, {b, -turn(a, c, d)}, {c, turn(a, b, d)}, {d, -turn(a, b, c)}}};
   std::sort(terms.begin(), terms.end(), [](const Term& l, const Term& r) { return l.point > r.point; });
   for (const Term& term : terms) {
     if (term.coefficient != 0) return term.coefficient;
@@ -69,7 +72,8 @@ class Judge {
 
   std::optional<std::string> judge() {
     if (mesh_.dimension() < 2) return line();
-    for (auto check : {&Judge::links, &Judge::stars, &Judge::counts, &Judge::turns, &Judge::hull, &Judge::circles}) {
+    for (auto check :
+         {&Judge::links, &Judge::stars, &Judge::counts, &Judge::turns, &Judge::hull, &Judge::circles}) {
       if (auto broken = (this->*check)()) return broken;
     }
     return std::nullopt;
@@ -92,7 +96,8 @@ class Judge {
     if (vertices.size() != mesh_.vertex_count()) return "I0: the line misses vertices";
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       if (!mesh_.is_alive(vertices[i])) return "I0: dead " + name(vertices[i]) + " on the line";
-      if (i > 0 && !(mesh_.point(vertices[i - 1]) < mesh_.point(vertices[i]))) return "I0: the line is out of order";
+      if (i > 0 && !(mesh_.point(vertices[i - 1]) < mesh_.point(vertices[i])))
+        return "I0: the line is out of order";
       if (i > 1 && turn(mesh_.point(vertices[0]), mesh_.point(vertices[1]), mesh_.point(vertices[i])) != 0) {
         return "I0: " + name(vertices[i]) + " is off the line";
       }
@@ -107,7 +112,8 @@ class Judge {
       if (a == b || b == c || c == a) return "I1: " + name(t) + " repeats a vertex";
       for (int i = 0; i < 3; ++i) {
         const HalfEdge here(t, i), there = mesh_.twin(here);
-        if (there.triangle().value() >= mesh_.triangle_slots() || !mesh_.is_alive(there.triangle()) || there.index() > 2) {
+        if (there.triangle().value() >= mesh_.triangle_slots() || !mesh_.is_alive(there.triangle()) ||
+            there.index() > 2) {
           return "I1: " + name(t) + " has no neighbour " + std::to_string(i);
         }
         if (!(mesh_.twin(there) == here) || mesh_.origin(here) != mesh_.destination(there) ||
@@ -121,7 +127,8 @@ class Judge {
     });
   }
 
-  /// Each vertex's triangles form one cycle around it, reached from triangle_at(): together they are all corners.
+  /// Each vertex's triangles form one cycle around it, reached from triangle_at(): together they are all
+  /// corners.
   Verdict stars() {
     std::size_t corners = 0;
     std::vector<HalfEdge> star;
@@ -129,9 +136,11 @@ class Judge {
       const VertexSlot v(i);
       if (!mesh_.is_alive(v)) continue;
       const TriangleSlot t = mesh_.triangle_at(v);
-      if (t.value() >= mesh_.triangle_slots() || !mesh_.is_alive(t)) return "I2: " + name(v) + " has no triangle";
+      if (t.value() >= mesh_.triangle_slots() || !mesh_.is_alive(t))
+        return "I2: " + name(v) + " has no triangle";
       const auto& vertices = mesh_.triangle(t).vertices;
-      if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) return "I2: " + name(v) + " is not in its triangle";
+      if (std::find(vertices.begin(), vertices.end(), v) == vertices.end())
+        return "I2: " + name(v) + " is not in its triangle";
       mesh_.link(v, star);
       corners += star.size();
       ++vertices_;
@@ -150,7 +159,8 @@ class Judge {
     return each_triangle([this](TriangleSlot t) -> Verdict {
       if (mesh_.is_infinite(t)) return std::nullopt;
       const auto& [a, b, c] = mesh_.triangle(t).vertices;
-      if (turn(mesh_.point(a), mesh_.point(b), mesh_.point(c)) <= 0) return "I4: " + name(t) + " is not counter-clockwise";
+      if (turn(mesh_.point(a), mesh_.point(b), mesh_.point(c)) <= 0)
+        return "I4: " + name(t) + " is not counter-clockwise";
       return std::nullopt;
     });
   }
@@ -177,7 +187,8 @@ class Judge {
       for (int i = 0; i < 3; ++i) {
         const HalfEdge there = mesh_.twin(t, i);
         if (there.triangle() < t || mesh_.is_infinite(there.triangle())) continue;
-        if (perturbed_circle_sign(mesh_.point(a), mesh_.point(b), mesh_.point(c), mesh_.point(mesh_.apex(there))) > 0) {
+        if (perturbed_circle_sign(mesh_.point(a), mesh_.point(b), mesh_.point(c),
+                                  mesh_.point(mesh_.apex(there))) > 0) {
           return "I6: " + name(mesh_.apex(there)) + " lies in the circle of " + name(t);
         }
       }

@@ -30,7 +30,8 @@ void Chew::draw_order(std::uint32_t degree) {
     state_ ^= state_ << 13;  // xorshift: never zero, so there are fewer than 64 heads
     state_ ^= state_ >> 7;
     state_ ^= state_ << 17;
-    const auto heads = std::min(static_cast<std::uint32_t>(std::countr_zero(state_ >> 20 | std::uint64_t{1} << 32)), kRounds - 1);
+    const auto heads = std::min(
+        static_cast<std::uint32_t>(std::countr_zero(state_ >> 20 | std::uint64_t{1} << 32)), kRounds - 1);
     rounds_[i] = static_cast<std::uint8_t>(kRounds - 1 - heads);
     ++ends[rounds_[i] + 1];
   }

@@ -9,10 +9,11 @@
 
 namespace tin::removal {
 
-/// Vertices leave the link in random order, then come back in reverse, each between the neighbours it had when it left.
-/// The order is random by rounds, each of which takes every second of those that are left, drawn by lot, and within a round
-/// follows the link: the expectation is the same but for a constant, and memory is met in order. The draws are
-/// a fixed pseudo-random sequence; they decide on time, never on the result. About 5 k in-circle tests.
+/// Vertices leave the link in random order, then come back in reverse, each between the neighbours it had
+/// when it left. The order is random by rounds, each of which takes every second of those that are left,
+/// drawn by lot, and within a round follows the link: the expectation is the same but for a constant, and
+/// memory is met in order. The draws are a fixed pseudo-random sequence; they decide on time, never on the
+/// result. About 5 k in-circle tests.
 class Chew {
  public:
   template <class Tally>

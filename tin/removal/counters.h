@@ -1,5 +1,5 @@
-// What a deletion method did, counted in the paper's units. A method is a template on where it counts: with NoCounters
-// every count is an empty inline function, so that production pays nothing.
+// What a deletion method did, counted in the paper's units. A method is a template on where it counts: with
+// NoCounters every count is an empty inline function, so that production pays nothing.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 namespace tin::removal {
 
 struct Counters {
-  std::uint64_t in_circle_tests = 0;     // sides of a plane through three lifted points, infinite ones included
+  std::uint64_t in_circle_tests = 0;  // sides of a plane through three lifted points, infinite ones included
   std::uint64_t power_computations = 0;
   std::uint64_t power_updates = 0;
   std::uint64_t comparisons = 0;         // of two powers

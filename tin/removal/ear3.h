@@ -1,4 +1,5 @@
-// `ear3` and `ear5`: the ear queue down to the last triangle, or down to a pentagon (Devillers 2002, section 4.3.1).
+// `ear3` and `ear5`: the ear queue down to the last triangle, or down to a pentagon (Devillers 2002,
+// section 4.3.1).
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@ class Ear3 {
   EarQueue queue_;
 };
 
-/// The queue stops at five vertices, and two or three in-circle tests do the rest; degrees three, four and five need no
-/// queue at all.
+/// The queue stops at five vertices, and two or three in-circle tests do the rest; degrees three, four and
+/// five need no queue at all.
 class Ear5 {
  public:
   template <class Tally>

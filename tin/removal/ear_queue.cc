@@ -1,5 +1,7 @@
 #include "tin/removal/ear_queue.h"
 
+#include <algorithm>
+
 #include "tin/base/check.h"
 
 namespace tin::removal {
@@ -19,7 +21,8 @@ void EarQueue::run(const Star& star, std::uint32_t stop, Tally& tally) {
     cut(ring_[some_node_].next);
     return;
   }
-  for (std::uint32_t i = 0, node = some_node_; i < left_; ++i, node = ring_[node].next) remains_.push_back(node);
+  for (std::uint32_t i = 0, node = some_node_; i < left_; ++i, node = ring_[node].next)
+    remains_.push_back(node);
 }
 
 void EarQueue::begin(const Star& star) {
@@ -52,7 +55,8 @@ void EarQueue::shell(const Star& star, std::uint32_t stop, Tally& tally) {
   }
 }
 
-/// Makes the present ear at `node`, if its corners are finite and turn left. `same_start`: only its third corner changed.
+/// Makes the present ear at `node`, if its corners are finite and turn left. `same_start`: only its third
+/// corner changed.
 template <class Tally>
 void EarQueue::renew(const Star& star, std::uint32_t node, bool same_start, Tally& tally) {
   const auto [previous, next, in_heap] = ring_[node];
@@ -134,15 +138,18 @@ void EarQueue::drop(const Star& star, std::uint32_t node, Tally& tally) {
   if (last.node != node) sift(star, i, last, tally);
 }
 
-/// Moves the hole to where `entry` belongs: up, or else down along the smaller children to a leaf and from there up again,
-/// which asks about half as often as comparing with `entry` on the way down.
+/// Moves the hole to where `entry` belongs: up, or else down along the smaller children to a leaf and from
+/// there up again, which asks about half as often as comparing with `entry` on the way down.
 template <class Tally>
 void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tally& tally) {
   if (!use_heap_) return put(hole, entry);
   const std::size_t start = climb(star, hole, 0, entry, tally);
   if (start != hole) return put(start, entry);
-  for (std::size_t child; (child = 2 * hole + 1) < heap_.size(); hole = child) {
-    if (child + 1 < heap_.size() && comes_before(star, heap_[child + 1], heap_[child], tally)) ++child;
+  for (std::size_t child; (child = kArity * hole + 1) < heap_.size(); hole = child) {
+    const std::size_t end = std::min(child + kArity, heap_.size());
+    for (std::size_t other = child + 1; other < end; ++other) {
+      if (comes_before(star, heap_[other], heap_[child], tally)) child = other;
+    }
     put(hole, heap_[child]);
   }
   put(climb(star, hole, start, entry, tally), entry);
@@ -150,10 +157,11 @@ void EarQueue::sift(const Star& star, std::size_t hole, const Entry& entry, Tall
 
 /// Moves the hole up, not above `top`, while its parent comes after `entry`.
 template <class Tally>
-std::size_t EarQueue::climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally) {
-  while (hole > top && comes_before(star, entry, heap_[(hole - 1) / 2], tally)) {
-    put(hole, heap_[(hole - 1) / 2]);
-    hole = (hole - 1) / 2;
+std::size_t EarQueue::climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry,
+                            Tally& tally) {
+  for (std::size_t parent;
+       hole > top && comes_before(star, entry, heap_[parent = (hole - 1) / kArity], tally); hole = parent) {
+    put(hole, heap_[parent]);
   }
   return hole;
 }

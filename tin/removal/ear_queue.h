@@ -1,10 +1,10 @@
-// The ear queue: the paper's algorithm (Devillers, "On Deletion in Delaunay Triangulations", IJCGA 2002, section 2.4),
-// exact and canonical.
+// The ear queue: the paper's algorithm (Devillers, "On Deletion in Delaunay Triangulations", IJCGA 2002,
+// section 2.4), exact and canonical.
 //
-// Ears of the hole are cut off in the order in which an observer who rises from the lifted removed vertex crosses their
-// planes: the smallest |power| first. (The paper's algorithm takes the minimum of -power, its lemma speaks of the
-// maximum: the algorithm is right.) With the infinite vertex in the link all finite convex ears go in power order, and what
-// is left is the new hull.
+// Ears of the hole are cut off in the order in which an observer who rises from the lifted removed vertex
+// crosses their planes: the smallest |power| first. (The paper's algorithm takes the minimum of -power, its
+// lemma speaks of the maximum: the algorithm is right.) With the infinite vertex in the link all finite
+// convex ears go in power order, and what is left is the new hull.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,17 @@ namespace tin::removal {
 /// How a neighbour's power is found when an ear was cut off and one of its corners changed.
 enum class Renewal {
   kCompute,  // anew, both neighbours: 3k - 8 computations at most
-  kUpdate,   // section 3.2: the previous ear keeps two corners, and only its third is put in: k - 4 of them are updates
+  kUpdate,   // section 3.2: the previous ear keeps two corners, and only its third is put in: k - 4 of them
+             // are updates
 };
 
 class EarQueue {
  public:
   explicit EarQueue(Renewal renewal) : renewal_(renewal) {}
 
-  /// Cuts ears off the hole until `stop` vertices are left (3: until it is filled), or, on the hull, until no finite ear
-  /// is; then closes the hull. Cost: O(k log k) for degree k. Ears and remains are valid until the next call.
-  /// Requires: stop >= 3; the star does not leave a line.
+  /// Cuts ears off the hole until `stop` vertices are left (3: until it is filled), or, on the hull, until no
+  /// finite ear is; then closes the hull. Cost: O(k log k) for degree k. Ears and remains are valid until the
+  /// next call. Requires: stop >= 3; the star does not leave a line.
   template <class Tally>
   void run(const Star& star, std::uint32_t stop, Tally& tally);
 
@@ -41,8 +42,8 @@ class EarQueue {
     std::uint32_t previous, next;
     std::uint32_t in_heap;  // index there, kNowhere if it is no ear
   };
-  /// The present ear at a node, with its corners as they were when its power was found: between the renewals of two
-  /// neighbours one of them is out of date, and the heap's order must not break.
+  /// The present ear at a node, with its corners as they were when its power was found: between the renewals
+  /// of two neighbours one of them is out of date, and the heap's order must not break.
   struct Candidate {
     exact::Power power;
     std::uint32_t previous, next;
@@ -51,6 +52,8 @@ class EarQueue {
     double approximate;
     std::uint32_t node;
   };
+  /// Each entry that moves writes to its node, wherever that is: a flat heap moves fewer.
+  static constexpr std::size_t kArity = 4;
   static constexpr std::uint32_t kScanLimit = 12;  // up to this degree a scan beats the heap
 
   void begin(const Star& star);

@@ -1,4 +1,5 @@
-// `edge-completion`: the Delaunay triangle on an edge of the hole, then both sides of it (Devillers 2002, section 4.1.2).
+// `edge-completion`: the Delaunay triangle on an edge of the hole, then both sides of it (Devillers 2002,
+// section 4.1.2).
 #pragma once
 
 #include <span>

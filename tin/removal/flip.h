@@ -8,9 +8,10 @@
 
 namespace tin::removal {
 
-/// All q_i are linked to q0. Then the fan is gone through once: with each next q_j the edges that turned out illegal are
-/// flipped around to it, which triangulates q0 ... q_j. Triangles of the fan that were not reached yet may overlap the
-/// others, and nobody looks at them. In-circle tests: (k - 2) (k - 3) / 2 at most, about 1.5 k on random links.
+/// All q_i are linked to q0. Then the fan is gone through once: with each next q_j the edges that turned out
+/// illegal are flipped around to it, which triangulates q0 ... q_j. Triangles of the fan that were not
+/// reached yet may overlap the others, and nobody looks at them. In-circle tests: (k - 2) (k - 3) / 2 at
+/// most, about 1.5 k on random links.
 class Flip {
  public:
   template <class Tally>

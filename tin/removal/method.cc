@@ -20,7 +20,9 @@ class Named final : public Method {
     NoCounters none;
     return algorithm_.fill(star, none);
   }
-  std::span<const Ear> fill(const Star& star, Counters& counters) override { return algorithm_.fill(star, counters); }
+  std::span<const Ear> fill(const Star& star, Counters& counters) override {
+    return algorithm_.fill(star, counters);
+  }
 
  private:
   std::string name_;

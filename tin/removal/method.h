@@ -28,8 +28,8 @@ class Method {
   virtual std::span<const Ear> fill(const Star& star, Counters& counters) = 0;
 };
 
-/// "ear3", "ear3-update", "ear5", "flip", "mixed:5" to "mixed:11", "edge-completion", "chew", "production"; null for
-/// any other name.
+/// "ear3", "ear3-update", "ear5", "flip", "mixed:5" to "mixed:11", "edge-completion", "chew", "production";
+/// null for any other name.
 std::unique_ptr<Method> make_method(std::string_view name);
 
 /// The names of all of them.

@@ -45,9 +45,9 @@ inline void Polygon::see(const Star& star, std::uint32_t position, std::uint32_t
   corner.z = at.z - origin.z;
 }
 
-/// Collects the triangles in conflict with `m`, breadth first, and returns their number. Nothing branches on what a test finds:
-/// a triangle's two other edges are always written, and count if it is in conflict. The edges that stay are the last ones
-/// written for each corner.
+/// Collects the triangles in conflict with `m`, breadth first, and returns their number. Nothing branches on
+/// what a test finds: a triangle's two other edges are always written, and count if it is in conflict. The
+/// edges that stay are the last ones written for each corner.
 template <class Tally>
 std::size_t Polygon::find_cavity(const Star& star, std::uint32_t before, std::uint32_t m, Tally& tally) {
   if (room_ == 0) enlarge();
@@ -72,7 +72,8 @@ std::size_t Polygon::find_cavity(const Star& star, std::uint32_t before, std::ui
     Corner& apex = corners_[middle];
     see(star, t.corners[j], m, apex);
     const Corner &start = corners_[from_corner], &end = corners_[to_corner];
-    const std::int64_t from_apex = start.x * apex.y - start.y * apex.x, apex_to = apex.x * end.y - apex.y * end.x;
+    const std::int64_t from_apex = start.x * apex.y - start.y * apex.x,
+                       apex_to = apex.x * end.y - apex.y * end.x;
     cavity_[count] = beyond >> 2;
     to_cross_[2 * count + 1] = {from_apex, t.twins[kNext[j]], from_corner, middle};
     to_cross_[2 * count + 2] = {apex_to, t.twins[kPrevious[j]], middle, to_corner};

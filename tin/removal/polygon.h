@@ -1,11 +1,14 @@
-// The triangulation of a part of the link while it grows by one vertex after another: what `flip` and `chew` share.
+// The triangulation of a part of the link while it grows by one vertex after another: what `flip` and `chew`
+// share.
 //
-// A new vertex m comes in over the edge between its neighbours: the triangles there whose circles hold m make way for
-// the star of m. They form a tree, so each is asked once. In terms of flips: the edges of these triangles are turned
-// around to m, and m ends up with them. Triangles need not be planar; see Star::in_conflict.
+// A new vertex m comes in over the edge between its neighbours: the triangles there whose circles hold m make
+// way for the star of m. They form a tree, so each is asked once. In terms of flips: the edges of these
+// triangles are turned around to m, and m ends up with them. Triangles need not be planar; see
+// Star::in_conflict.
 //
-// Of a large link little is in the caches at a time. Each vertex brings one triangle, which is stored in the vertex's place, so
-// work that follows the link follows memory. Tests use differences to m, which are computed once per vertex.
+// Of a large link little is in the caches at a time. Each vertex brings one triangle, which is stored in the
+// vertex's place, so work that follows the link follows memory. Tests use differences to m, which are
+// computed once per vertex.
 #pragma once
 
 #include <array>
@@ -21,7 +24,8 @@ class Polygon {
   /// Starts with the triangle of three link positions in order; `degree` is the link's.
   void start(std::uint32_t degree, std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
-  /// Inserts position `m` between `before` and its present successor. Cost: the number of triangles that make way.
+  /// Inserts position `m` between `before` and its present successor. Cost: the number of triangles that make
+  /// way.
   template <class Tally>
   void insert(const Star& star, std::uint32_t before, std::uint32_t m, Tally& tally);
 

@@ -1,4 +1,5 @@
-// The star of a vertex that is to go: its link as all deletion methods see it, and the sewing of what they answer.
+// The star of a vertex that is to go: its link as all deletion methods see it, and the sewing of what they
+// answer.
 //
 //   Star star;
 //   star.gather(mesh, v);
@@ -15,8 +16,9 @@
 
 namespace tin::removal {
 
-/// A triangle that fills the hole: three positions in the link, in the link's order. Ears come in an order in which each
-/// cuts its `middle` off the polygon that is left; in the last one all three corners are what is left.
+/// A triangle that fills the hole: three positions in the link, in the link's order. Ears come in an order in
+/// which each cuts its `middle` off the polygon that is left; in the last one all three corners are what is
+/// left.
 struct Ear {
   std::uint32_t previous, middle, next;
 };
@@ -30,9 +32,9 @@ class Star {
   /// Takes the link of `v`. Requires: dimension 2.
   void gather(const mesh::Mesh& mesh, mesh::VertexSlot v);
 
-  std::uint32_t degree() const { return static_cast<std::uint32_t>(link_.size()); }
+  std::uint32_t degree() const { return degree_; }
   /// The half-edges opposite to the vertex, counter-clockwise; position i is the origin of the i-th.
-  std::span<const mesh::HalfEdge> link() const { return link_; }
+  std::span<const mesh::HalfEdge> link() const { return std::span(link_).first(degree_); }
   mesh::VertexSlot vertex(std::uint32_t i) const { return vertices_[i]; }
   /// The link vertex relative to the one to be removed. Requires: i != infinite().
   const exact::Lifted& at(std::uint32_t i) const { return at_[i]; }
@@ -43,8 +45,9 @@ class Star {
   /// Whether all other vertices of the mesh are collinear, so that no triangle would be left.
   bool leaves_a_line() const;
 
-  /// Whether the perturbed circle of i, j, k holds l. Positions i, j, k in cyclic order, any turn: what is decided is the
-  /// side of l's lift, so triangulations of the link that are not planar do no harm. Requires: distinct positions.
+  /// Whether the perturbed circle of i, j, k holds l. Positions i, j, k in cyclic order, any turn: what is
+  /// decided is the side of l's lift, so triangulations of the link that are not planar do no harm. Requires:
+  /// distinct positions.
   template <class Tally>
   bool in_conflict(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l, Tally& tally) const {
     tally.in_circle_test();
@@ -52,18 +55,23 @@ class Star {
     return exact::lifted_sign(at_[i], at_[j], at_[k], at_[l]) > 0;
   }
 
-  /// Replaces the star by the ears; `fresh` becomes the list of new triangles, and the vertex is released. The ears are
-  /// k - 2 in number and fill the hole. Requires: the mesh is as it was in gather().
+  /// Replaces the star by the ears; `fresh` becomes the list of new triangles, and the vertex is released.
+  /// The ears are k - 2 in number and fill the hole. Requires: the mesh is as it was in gather().
   void refill(mesh::Mesh& mesh, std::span<const Ear> ears, std::vector<mesh::TriangleSlot>& fresh);
 
  private:
   void walk_around(const mesh::Mesh& mesh, mesh::VertexSlot v);
+  void enlarge();
   bool in_conflict_on_hull(std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) const;
   int hull_sign(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
 
   mesh::VertexSlot removed_{mesh::kNone};
   std::size_t vertices_in_mesh_ = 0;
   std::uint32_t infinite_ = kNowhere;
+  std::uint32_t degree_ = 0;
+
+  // Of these the first degree_ are in use: they are larger than any link so far, since resizing them each
+  // time costs.
   std::vector<mesh::HalfEdge> link_;
   std::vector<mesh::HalfEdge> clockwise_;  // while walking: the part found in the other direction
   std::vector<mesh::HalfEdge> outside_;  // the other sides of the link's edges

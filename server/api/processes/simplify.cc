@@ -1,9 +1,10 @@
-#include "server/app/simplify.h"
+#include "server/api/processes/simplify.h"
 
 #include <algorithm>
 
-#include "server/api/processes/simplify.h"
 #include "server/api/processes/process.h"
+#include "server/app/simplify.h"
+#include "server/app/threads.h"
 
 namespace server::api::processes {
 
@@ -90,7 +91,7 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
   wanted.options.against = against_of(inputs->against);
   wanted.options.keep_flat = static_cast<std::size_t>(inputs->keep_flat);
   wanted.options.seed = inputs->seed;
-  wanted.options.threads = app::simplify_threads();
+  wanted.options.threads = app::engine_threads();
   wanted.options.tolerance = inputs->tolerance;
   if (inputs->max_vertices) wanted.options.max_vertices = static_cast<std::size_t>(*inputs->max_vertices);
   return Execution{

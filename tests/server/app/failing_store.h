@@ -21,6 +21,7 @@ class FailingStore : public server::store::Store {
   using JournalRow = server::store::JournalRow;
 
   bool fail = false;
+  std::string source;                  // of the TIN
   std::chrono::milliseconds delay{0};  // of a commit
   std::size_t appended = 0;            // revisions
   std::atomic<std::size_t> commits{0};
@@ -52,7 +53,7 @@ class FailingStore : public server::store::Store {
   Result<server::store::Loaded> load(std::string_view) override {
     return tin::base::error(tin::base::Code::kNotFound, "");
   }
-  Result<std::string> load_source(std::string_view) override { return std::string(); }
+  Result<std::string> load_source(std::string_view) override { return source; }
   Result<std::vector<JournalRow>> read_journal(std::string_view,
                                                const server::store::JournalRange& range) override {
     const std::lock_guard guard(mutex_);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "server/app/catalogue.h"
+#include "server/app/source.h"
 #include "server/store/store.h"
 #include "tests/server/app/failing_store.h"
 #include "tin/mesh/validate.h"
@@ -417,6 +418,39 @@ TEST(ConcurrencyTest, ReadersAnEditorAndALongReaderTogether) {
   stop = true;
   for (auto& thread : threads) thread.join();
   EXPECT_EQ(tin.summary().revision, 301U);
+}
+
+TEST(TinMemoryTest, ASourceCountsWhileSomebodyHasItInHand) {
+  FailingStore store;
+  Terrain terrain = grid_terrain(20);
+  const auto samples = server::app::vertices_as_source(terrain);
+  store.source = server::app::attach_source(terrain, samples, server::app::Completeness::kAllSamples);
+  const Tin tin({{"t", "T", 5}, std::move(terrain), Duplicates::kReject, std::nullopt, 1}, store, 500);
+  const std::uint64_t alone = tin.held_bytes();
+  {
+    const auto source = tin.source().value();
+    const std::uint64_t bytes = server::app::estimated_bytes(*source);
+    EXPECT_GE(bytes, 400 * sizeof(tin::exact::Point));
+    EXPECT_EQ(tin.held_bytes(), alone + bytes);
+  }
+  EXPECT_EQ(tin.held_bytes(), alone);
+}
+
+TEST_F(TinTest, AnEditsAnswerIsFoundByItsKeyAndItsVertexAsItWasThen) {
+  const server::app::RequestKey key{"k", "request"};
+  ASSERT_EQ(tin_.answered(key).value(), std::nullopt);
+  const std::vector<WorldEdit> insert{InsertAt{0.5, 0.5, 9}};
+  const auto made = tin_.edit(insert, {{}, info_, key});
+  ASSERT_TRUE(made.ok());
+  EXPECT_EQ(tin_.answered(key).value(), made.value());
+  EXPECT_EQ(tin_.answered({"k", "other"}).error().code, Code::kInvalidValue);
+  EXPECT_EQ(tin_.vertex_after(2, VertexId(401))->z, 9);
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{SetZ{VertexId(401), 4}}, {{}, info_}).ok());
+  ASSERT_TRUE(tin_.edit(std::vector<WorldEdit>{Remove{VertexId(401)}}, {{}, info_}).ok());
+  EXPECT_EQ(tin_.vertex_after(2, VertexId(401))->z, 9);
+  EXPECT_EQ(tin_.vertex_after(3, VertexId(401))->z, 4);
+  EXPECT_FALSE(tin_.vertex_after(4, VertexId(401)).has_value());
+  EXPECT_FALSE(tin_.vertex_after(3, VertexId(1)).has_value()) << "that revision did not touch it";
 }
 
 }  // namespace

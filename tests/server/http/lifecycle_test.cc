@@ -173,5 +173,72 @@ TEST_F(LifecycleTest, ManyClientsAtOnce) {
   EXPECT_EQ(right, 400);
 }
 
+/// A handler that works until nobody waits for it, or for ten seconds at most.
+Response work(Request& request, std::promise<bool>& lost) {
+  tin::base::Progress progress;
+  const server::http::Attention::Work work(request.attention, progress);
+  for (int i = 0; i < 1000 && !progress.cancelled(); ++i) std::this_thread::sleep_for(milliseconds(10));
+  lost.set_value(progress.cancelled() && request.is_aborted());
+  return text("late");
+}
+
+TEST_F(LifecycleTest, WorkIsCancelledWhenItsClientGoes) {
+  std::promise<bool> lost;
+  add(Method::kGet, "/work", [&](Request& request) { return work(request, lost); });
+  start();
+  auto client = std::make_unique<RawClient>(port_);
+  client->send("GET /work HTTP/1.1\r\nHost: t\r\n\r\n");
+  std::this_thread::sleep_for(milliseconds(100));
+  client.reset();
+  EXPECT_TRUE(lost.get_future().get());
+  for (int i = 0; i < 500 && accesses().empty(); ++i) std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_EQ(accesses().size(), 1U);
+}
+
+TEST_F(LifecycleTest, WorkIsCancelledWhenTheServerWaitsNoLonger) {
+  options_.drain_timeout = milliseconds(100);
+  std::promise<bool> lost;
+  add(Method::kGet, "/work", [&](Request& request) { return work(request, lost); });
+  start();
+  RawClient client(port_);
+  client.send("GET /work HTTP/1.1\r\nHost: t\r\n\r\n");
+  std::this_thread::sleep_for(milliseconds(100));
+  server_->stop();
+  EXPECT_TRUE(lost.get_future().get());
+}
+
+TEST_F(LifecycleTest, AClientThatOnlyEndsItsSendingGetsItsAnswer) {
+  add(Method::kGet, "/slow", [&](Request& request) {
+    std::this_thread::sleep_for(milliseconds(700));
+    return text(request.is_aborted() ? "lost" : "done");
+  });
+  start();
+  RawClient client(port_);
+  client.send("GET /slow HTTP/1.1\r\nHost: t\r\n\r\n");
+  client.finish_sending();
+  EXPECT_EQ(client.read_answer().status, 102);
+  EXPECT_EQ(client.read_answer().body, "done");
+  RawClient quick(port_);
+  quick.send(kHello);
+  quick.finish_sending();
+  EXPECT_EQ(quick.read_answer().body, "hello");
+}
+
+TEST_F(LifecycleTest, ARequestThatFollowsIsNoEnd) {
+  add(Method::kGet, "/slow", [&](Request& request) {
+    gate_.pass();
+    return text(request.is_aborted() ? "lost" : "done");
+  });
+  start();
+  RawClient client(port_);
+  client.send("GET /slow HTTP/1.1\r\nHost: t\r\n\r\n");
+  gate_.wait_for_visitor();
+  client.send(kHello);
+  std::this_thread::sleep_for(milliseconds(50));
+  gate_.open();
+  EXPECT_EQ(client.read_answer().body, "done");
+  EXPECT_EQ(client.read_answer().body, "hello");
+}
+
 }  // namespace
 }  // namespace tests::server_http

@@ -201,5 +201,67 @@ TEST_F(LimitsTest, AnUploadThatCannotBeStoredIsAnError) {
   EXPECT_EQ(problems().size(), 1U);
 }
 
+constexpr std::size_t kBig = 100'000;
+
+std::string post_big(std::size_t size = kBig) {
+  return "POST /echo HTTP/1.1\r\nHost: t\r\nContent-Length: " + std::to_string(size) + "\r\n\r\n";
+}
+
+TEST_F(LimitsTest, BodiesInMemoryShareWhatTheyMayTake) {
+  options_.buffered_bytes = 4 * kBig;
+  start();
+  RawClient holder(port_);
+  holder.send(post_big(4 * kBig));
+  holder.send(std::string(3 * kBig, 'x'));
+  std::this_thread::sleep_for(milliseconds(100));
+  RawClient other(port_);
+  other.send(post_big(3 * kBig) + std::string(3 * kBig, 'y'));
+  const RawAnswer refused = other.read_answer();
+  EXPECT_EQ(refused.status, 503);
+  EXPECT_EQ(RawClient(port_).ask(post_big(5) + "hello").body, "hello") << "what is small always goes";
+  holder.send(std::string(kBig, 'x'));
+  EXPECT_EQ(holder.read_answer().body.size(), 4 * kBig) << "at the limit";
+  int status = 0;  // the server lets go a moment after the client has its answer
+  for (int i = 0; i < 100 && status != 200; ++i) {
+    status = RawClient(port_).ask(post_big(3 * kBig) + std::string(3 * kBig, 'y')).status;
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_EQ(status, 200);
+  EXPECT_EQ(RawClient(port_).ask(post_big(5 * kBig) + std::string(5 * kBig, 'y')).status, 503) << "past it";
+}
+
+/// It has been done: to say that it was refused would be wrong.
+TEST_F(LimitsTest, WhatChangedSomethingIsAnsweredWithOrWithoutRoom) {
+  options_.buffered_bytes = kBig;
+  add(Method::kPost, "/change", [](Request&) { return text(std::string(2 * kBig, 'c')); });
+  start();
+  EXPECT_EQ(ask("POST /change", "Content-Length: 0\r\n").body.size(), 2 * kBig);
+  EXPECT_EQ(RawClient(port_).ask(post_big(1000) + std::string(1000, 'y')).status, 200);
+}
+
+TEST_F(LimitsTest, AnswersThatWaitForSlowClientsShareItToo) {
+  constexpr std::size_t kAnswer = 8'000'000;  // more than sockets hold
+  options_.buffered_bytes = 2 * kAnswer;
+  options_.compress_from_bytes = 0;
+  add(Method::kGet, "/big", [](Request&) { return text(std::string(kAnswer, 'b')); });
+  start();
+  const std::string request = "GET /big HTTP/1.1\r\nHost: t\r\n\r\n";
+  RawClient first(port_, 4096), second(port_, 4096);
+  for (RawClient* client : {&first, &second}) {
+    client->send(request);
+    EXPECT_NE(client->read_some().find(" 200 "), std::string::npos);
+  }
+  EXPECT_EQ(RawClient(port_).ask(request).status, 503);
+  EXPECT_EQ(RawClient(port_).ask("GET /hello HTTP/1.1\r\nHost: t\r\n\r\n").status, 200);
+  while (first.read_some().size() > 0 && accesses().size() < 3) {
+  }
+  int status = 0;
+  for (int i = 0; i < 100 && status != 200; ++i) {
+    status = RawClient(port_).ask(request).status;
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  EXPECT_EQ(status, 200) << "the first has all of its answer";
+}
+
 }  // namespace
 }  // namespace tests::server_http

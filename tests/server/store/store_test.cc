@@ -353,6 +353,8 @@ TEST_P(StoreTest, WritesThatComeAtOneTimeShareCommits) {
   const auto after = store_->counts();
   EXPECT_EQ(after.writes - before.writes, kThreads * kAppends);
   EXPECT_LT(after.commits - before.commits, kThreads * kAppends / 2);
+  EXPECT_GT(after.seconds, before.seconds);
+  EXPECT_EQ(after.waiting, 0U);
   reopen();
   for (int t = 0; t < kThreads; ++t) EXPECT_EQ(store_->load(std::to_string(t))->journal.size(), kAppends);
 }

@@ -82,6 +82,51 @@ TEST_F(TileCacheTest, WhatIsKeptIsWhatWouldBeMade) {
   EXPECT_EQ(forgetful.statistics().bytes, 0U);
 }
 
+/// Cesium reads nothing else than these lists where tiles bear metadata.
+TEST_F(TileCacheTest, EveryTenthLevelListsTheTilesBelow) {
+  const auto tiles = *cache_.tileset(*tin_, tin_->version());
+  ASSERT_GT(tiles.levels, 11);
+  const auto ranges = [&](const TileId& id) {
+    std::string list;
+    for (int z = id.z + 1; z <= id.z + 10 && z < tiles.levels; ++z) {
+      std::array<std::uint32_t, 4> r{UINT32_MAX, UINT32_MAX, 0, 0};
+      const auto [x0, y0, x1, y1] = tiles.available(z);
+      for (std::uint32_t y = y0; y <= y1; ++y) {
+        for (std::uint32_t x = x0; x <= x1; ++x) {
+          if (x >> (z - id.z) != id.x || y >> (z - id.z) != id.y) continue;
+          r = {std::min(r[0], x), std::min(r[1], y), std::max(r[2], x), std::max(r[3], y)};
+        }
+      }
+      list += list.empty() ? "" : ",";
+      const auto text = [](std::uint32_t n) { return std::to_string(n); };
+      list += r[0] > r[2] ? "[]"
+                          : "[{\"startX\":" + text(r[0]) + ",\"startY\":" + text(r[1]) +
+                                ",\"endX\":" + text(r[2]) + ",\"endY\":" + text(r[3]) + "}]";
+    }
+    return "\"available\":[" + list + "]";
+  };
+  std::vector<TileId> listing{{0, 0, 0}, {0, 1, 0}};
+  const auto [x0, y0, x1, y1] = tiles.available(10);
+  for (std::uint32_t y = y0; y <= y1; ++y) {
+    for (std::uint32_t x = x0; x <= x1; ++x) listing.push_back({10, x, y});
+  }
+  for (const TileId& id : listing) {
+    const auto tile = decode_tile(gunzipped(get(TileKind::kTerrain, id)->bytes));
+    EXPECT_NE(tile.metadata.find(ranges(id)), std::string::npos)
+        << id.z << "/" << id.x << "/" << id.y << ": " << tile.metadata << " lacks " << ranges(id);
+  }
+  const auto below = tiles.available(11);
+  EXPECT_EQ(decode_tile(gunzipped(get(TileKind::kTerrain, {11, below[0], below[1]})->bytes))
+                .metadata.find("available"),
+            std::string::npos);
+  // A vertex far out widens the terrain's extent, and so what lies below tiles that no triangle of it
+  // touches.
+  TileCache forgetful(0);
+  insert(500000, 5240000, 600);
+  for (const TileId& id : listing)
+    EXPECT_EQ(get(TileKind::kTerrain, id)->bytes, (*forgetful.get(*tin_, TileKind::kTerrain, id))->bytes);
+}
+
 TEST_F(TileCacheTest, MemoryIsBounded) {
   TileCache small(200'000);
   for (std::uint32_t x = 0; x < 8; ++x) {

@@ -172,8 +172,9 @@ TEST_F(BulkTest, ACancelledBuildSaysSoOnAnyNumberOfThreads) {
 
 TEST_F(BulkTest, TheHilbertCurveVisitsNeighboursNext) {
   std::vector<Point> cells = support::grid_points(32, 32, 1, {-kLatticeHalf, -kLatticeHalf});
-  std::sort(cells.begin(), cells.end(),
-            [](Point a, Point b) { return tin::delaunay::hilbert_index(a) < tin::delaunay::hilbert_index(b); });
+  const tin::delaunay::HilbertCurve curve(cells.front(), cells.back());
+  EXPECT_EQ(curve.index_bits(), 10);
+  std::sort(cells.begin(), cells.end(), [&](Point a, Point b) { return curve.index(a) < curve.index(b); });
   for (std::size_t i = 1; i < cells.size(); ++i) {
     EXPECT_EQ(std::abs(cells[i].x - cells[i - 1].x) + std::abs(cells[i].y - cells[i - 1].y), 1);
   }
@@ -185,11 +186,15 @@ TEST_F(BulkTest, SortingAlongTheCurveReachesTheLastBitAndKeepsTheOrderOfEqualPoi
     points.insert(points.end(), points.begin(), points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2));
     const auto one = tin::delaunay::hilbert_sorted(points, 1), three = tin::delaunay::hilbert_sorted(points, 3);
     ASSERT_EQ(one.size(), points.size());
+    const auto [left, right] = std::minmax_element(points.begin(), points.end());
+    const auto by_y = [](Point a, Point b) { return a.y < b.y; };
+    const auto [bottom, top] = std::minmax_element(points.begin(), points.end(), by_y);
+    const tin::delaunay::HilbertCurve curve({left->x, bottom->y}, {right->x, top->y});
     for (std::size_t i = 0; i < one.size(); ++i) {
       ASSERT_EQ(one[i].index, three[i].index);
       if (i == 0) continue;
-      const auto before = std::pair(tin::delaunay::hilbert_index(points[one[i - 1].index]), one[i - 1].index);
-      ASSERT_LT(before, std::pair(tin::delaunay::hilbert_index(points[one[i].index]), one[i].index));
+      const auto before = std::pair(curve.index(points[one[i - 1].index]), one[i - 1].index);
+      ASSERT_LT(before, std::pair(curve.index(points[one[i].index]), one[i].index));
     }
   }
 }

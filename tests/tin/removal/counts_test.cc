@@ -149,7 +149,8 @@ TEST_F(CountsTest, TheFilterDecidesMostComparisonsAndFailsByNatureOnTies) {
 }
 
 TEST_F(CountsTest, LowDegreesNeedFewTests) {
-  // To tell 1, 2, 5, 14 and 42 triangulations apart takes 0, 1, 3, 4 and 6 tests at least in the worst case.
+  // To tell 1, 2, 5, 14 and 42 triangulations apart takes 0, 1, 3, 4 and 6 tests at least in the worst case. The pentagon's
+  // third test is made in any case, since waiting for what the second says costs more.
   std::array<std::uint64_t, 8> most{}, stars{}, total{};
   const auto points = support::random_points(random_, 4000, 1 << 20);
   std::vector<tin::mesh::VertexSlot> slots;
@@ -164,7 +165,7 @@ TEST_F(CountsTest, LowDegreesNeedFewTests) {
     most[k] = std::max(most[k], tests);
   }
   EXPECT_EQ(most, (std::array<std::uint64_t, 8>{0, 0, 0, 0, 1, 3, 6, 10}));
-  EXPECT_LT(10 * total[5], 27 * stars[5]);
+  EXPECT_EQ(total[5], 3 * stars[5]);
   EXPECT_LT(10 * total[6], 54 * stars[6]);
   EXPECT_LT(10 * total[7], 86 * stars[7]);
 }
