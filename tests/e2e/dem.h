@@ -41,7 +41,7 @@ struct Misses {
   std::size_t uncovered = 0;  // valid samples in no triangle
   std::size_t beyond = 0;     // valid samples farther away than the tolerance
   double largest = 0;         // vertical distance
-  std::size_t strangers = 0;  // vertices that are no sample
+  std::size_t strangers = 0;  // vertices that are no sample, or have another elevation
 };
 
 /// Rasterises the triangles of a GeoJSON, in the DEM's CRS, over the DEM's pixel centres. Vertices are
