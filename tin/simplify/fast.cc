@@ -40,17 +40,15 @@ std::size_t samples_in(const Samples& samples, const Tiling& tiling, std::size_t
 }
 
 /// Brings a tile's TIN within the tolerance. By way of a looser tolerance one vertex in fifty to a hundred is
-/// spared, which is worth the time where vertices are few among the samples, since there most of it goes into
-/// the first scans; and on a small terrain, where it is little in any case.
+/// spared, which is worth the time where vertices are few among the samples: there most of it goes into the first
+/// scans.
 void thin(Patch& patch, double tolerance, std::size_t samples, const Phase& phase) {
   constexpr double kLooser = 1.15;
   constexpr std::size_t kManySamples = 24;  // for each vertex
-  constexpr std::size_t kSmallTerrain = std::size_t{1} << 18;
   const double looser = tolerance * kLooser;
   if (looser <= std::numeric_limits<double>::max()) {
     Greedy(patch, looser).run(Greedy::kNoBudget, phase);
-    const bool small = patch.samples().extent().samples < kSmallTerrain;
-    if (small || patch.mesh().vertex_count() * kManySamples < samples) Decimation(patch, looser).run(phase);
+    if (patch.mesh().vertex_count() * kManySamples < samples) Decimation(patch, looser).run(phase);
   }
   Greedy(patch, tolerance).run(Greedy::kNoBudget, phase);
   Decimation(patch, tolerance).run(phase);
