@@ -160,6 +160,7 @@ std::optional<Error> write(const std::filesystem::path& out, const RasterSpec& s
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   auto bad = single ? write_tiles<float>(band, spec, tile_rows, rows, progress)
                     : write_tiles<double>(band, spec, tile_rows, rows, progress);
+  if (bad && bad->code == Code::kStorage) return failed();
   dataset.reset();
   if (bad) return bad;
   // Closing reports its failures, such as a full disk, only as messages.
