@@ -57,6 +57,12 @@ Result<Remark> read_revert_request(std::string_view body) {
   return read_remark(*object);
 }
 
+Result<Remark> parse_remark(std::optional<std::string> author, std::optional<std::string> note) {
+  Remark remark{std::move(author).value_or(""), std::move(note).value_or("")};
+  if (auto fine = check_remark(remark, "query:author", "query:note"); !fine) return std::move(fine).error();
+  return remark;
+}
+
 std::string revision_json(const RevisionDocument& revision) {
   JsonWriter json;
   write_revision(json, revision);

@@ -19,6 +19,10 @@ tin::base::Result<std::string> read_patch_tin(std::string_view body);
 /// POST /tins/{tin}/revisions/{revision}/revert: the body may be empty.
 tin::base::Result<Remark> read_revert_request(std::string_view body);
 
+/// What the parameters "author" and "note" say of an edit whose body is a resource itself. Errors: kTooLarge,
+/// kInvalidValue (control characters, or no UTF-8), at the parameter.
+tin::base::Result<Remark> parse_remark(std::optional<std::string> author, std::optional<std::string> note);
+
 /// What a revision did.
 struct RevisionDocument {
   std::uint64_t revision = 0;

@@ -23,6 +23,8 @@ constexpr std::size_t kMaxTitle = 512;
 constexpr std::size_t kMaxUnit = 64;
 constexpr std::size_t kMaxCrsName = 256;
 constexpr std::size_t kMaxWord = 256;
+constexpr std::size_t kMaxAuthor = 200;
+constexpr std::size_t kMaxNote = 2000;
 constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // ids are exact in every JSON reader up to here
 
 bool is_alphanumeric(char c) {
@@ -233,22 +235,38 @@ bool is_tin_id(std::string_view id) {
          std::all_of(id.begin(), id.end(), [](char c) { return is_alphanumeric(c) || c == '_' || c == '-'; });
 }
 
+Result<void> check_remark(const Remark& remark, std::string author_where, std::string note_where) {
+  const auto check = [](std::string_view text, std::size_t most, std::string where) -> Result<void> {
+    if (text.size() > most)
+      return error(Code::kTooLarge, "there must be at most " + std::to_string(most) + " bytes here", std::move(where));
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t length = utf8_length(text.substr(at));
+      if (length == 0) return error(Code::kInvalidValue, "there must be UTF-8 here", std::move(where));
+      const auto byte = static_cast<unsigned char>(text[at]);
+      if (byte < 0x20 && byte != '\n' && byte != '\t')
+        return error(Code::kInvalidValue, "there must be no control characters here", std::move(where));
+      at += length;
+    }
+    return {};
+  };
+  if (auto fine = check(remark.author, kMaxAuthor, std::move(author_where)); !fine) return fine;
+  return check(remark.note, kMaxNote, std::move(note_where));
+}
+
 Result<Remark> read_remark(const Object& object) {
-  constexpr std::size_t kMaxAuthor = 200, kMaxNote = 2000;
   Remark remark;
-  for (const auto& [name, most, text] : {std::tuple("author", kMaxAuthor, &remark.author),
-                                         std::tuple("note", kMaxNote, &remark.note)}) {
+  std::string author_where, note_where;
+  for (const auto& [name, most, text, where] :
+       {std::tuple("author", kMaxAuthor, &remark.author, &author_where),
+        std::tuple("note", kMaxNote, &remark.note, &note_where)}) {
     const auto member = object.find(name);
     if (!member) continue;
     auto given = member->string(most);
     if (!given) return std::move(given).error();
-    const auto is_control = [](char c) {
-      return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t';
-    };
-    if (std::any_of(given->begin(), given->end(), is_control))
-      return member->error(Code::kInvalidValue, "there must be no control characters here");
     *text = *given;
+    *where = member->pointer();
   }
+  if (auto fine = check_remark(remark, author_where, note_where); !fine) return std::move(fine).error();
   return remark;
 }
 

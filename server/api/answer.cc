@@ -120,6 +120,9 @@ Result<std::optional<app::RequestKey>> request_key(const Request& request) {
   std::string asked = std::string(request.path).append(1, '\n').append(request.body);
   if (request.method != http::Method::kPost) asked.append(1, '\n').append(http::method_name(request.method));
   asked.append(request.header("content-crs"));
+  for (const std::string_view name : {"author", "note"}) {
+    if (const auto text = request.query_value(name)) asked.append(1, '\n').append(*text);
+  }
   append_number(request_print, hash(asked));
   append_number(request_print, tin::codec::crc32c(request.body));
   append_number(request_print, request.body.size());

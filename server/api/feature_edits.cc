@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "proto/feature_read.h"
+#include "proto/history.h"
 #include "proto/problems.h"
 #include "server/api/edit_place.h"
 #include "server/api/feature_query.h"
@@ -27,6 +28,11 @@ Result<WireCrs> body_crs(const Request& request, const tin::frame::Frame& frame)
   std::string_view field = request.header("content-crs");
   if (field.starts_with('<') && field.ends_with('>')) field = field.substr(1, field.size() - 2);
   return wire_crs(frame, field.empty() ? std::nullopt : std::optional(std::string(field)), "header:Content-Crs");
+}
+
+/// Who makes the edit and why: the body is the vertex itself, so the address says it.
+Result<proto::Remark> remark_of(const Request& request) {
+  return proto::parse_remark(request.query_value("author"), request.query_value("note"));
 }
 
 /// A body's position in the TIN's CRS.
@@ -84,6 +90,8 @@ Result<Response> create(Context& context, const Request& request) {
   if (auto json = require_json(request); !json) return json.error();
   const auto place = edit_place(context, request);
   if (!place) return place.error();
+  const auto remark = remark_of(request);
+  if (!remark) return remark.error();
   const auto body = proto::read_vertex_feature(request.body, proto::FeatureBody::kWhole);
   if (!body) return body.error();
   const auto frame = (*tin)->summary().frame;
@@ -92,7 +100,7 @@ Result<Response> create(Context& context, const Request& request) {
   const auto at = own_position(*body->at, *crs, frame);
   if (!at) return at.error();
   const app::WorldEdit insert = app::InsertAt{at->x, at->y, *body->z};
-  const auto edited = carry_out(context, **tin, {&insert, 1}, place->terms({}));
+  const auto edited = carry_out(context, **tin, {&insert, 1}, place->terms({}, *remark));
   if (!edited) return in_geometry(edited.error());
   return created(context, request, **tin, *edited);
 }
@@ -107,6 +115,8 @@ Result<Response> change(Context& context, const Request& request, const EditsOf&
   if (!tin) return tin.error();
   const std::string_view id = request.path_parameter("feature");
   const std::string_view if_match = request.header("if-match");
+  const auto remark = remark_of(request);
+  if (!remark) return remark.error();
   const auto place = edit_place(context, request);
   if (!place) return place.error();
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -128,7 +138,7 @@ Result<Response> change(Context& context, const Request& request, const EditsOf&
     const auto edits = edits_of(**tin, feature->ids[0]);
     if (!edits) return edits.error();
     const std::uint64_t seen = revision;
-    const auto edited = carry_out(context, **tin, *edits, place->terms({&seen, 1}));
+    const auto edited = carry_out(context, **tin, *edits, place->terms({&seen, 1}, *remark));
     if (!edited && edited.error().code == Code::kPrecondition) continue;
     if (!edited) return in_geometry(edited.error());
     return changed(**tin, *edited);
@@ -178,10 +188,14 @@ void add_feature_edits(http::Router& router, Context& context) {
     return guarded([&context, f](Request& request) { return f(context, request); });
   };
   const std::string items = "/tins/{tin}/collections/vertices/items", item = items + "/{feature}";
-  router.add({.method = Method::kPost, .pattern = items, .body = BodyKind::kMemory, .handler = on(create)});
-  router.add({.method = Method::kPut, .pattern = item, .body = BodyKind::kMemory, .handler = on(replace)});
-  router.add({.method = Method::kPatch, .pattern = item, .body = BodyKind::kMemory, .handler = on(update)});
-  router.add({.method = Method::kDelete, .pattern = item, .handler = on(remove)});
+  const std::vector<std::string> query{"author", "note"};
+  const auto with_body = [&](Method method, const std::string& pattern, auto f) {
+    router.add({.method = method, .pattern = pattern, .query = query, .body = BodyKind::kMemory, .handler = on(f)});
+  };
+  with_body(Method::kPost, items, create);
+  with_body(Method::kPut, item, replace);
+  with_body(Method::kPatch, item, update);
+  router.add({.method = Method::kDelete, .pattern = item, .query = query, .handler = on(remove)});
 }
 
 }  // namespace server::api

@@ -51,6 +51,30 @@ TEST_F(HistoryTest, RevisionsSayWhoDidWhatWhere) {
   EXPECT_EQ(first["bbox"], Json::parse("[10,5,30,20]"));
 }
 
+TEST_F(HistoryTest, EditsOfFeaturesSayWhoAndWhyInTheAddress) {
+  const std::string items = "/tins/hill/collections/vertices/items", who = "?author=Ad%C3%A8le&note=a%20post";
+  const std::string body =
+      R"({"type":"Feature","geometry":{"type":"Point","coordinates":[10,20,5]},"properties":{}})";
+  const auto send = [&](const std::string& method, const std::string& target, const std::string& with) {
+    return server_.ask({method, target, "application/json", with, "If-Match: *\r\nIdempotency-Key: " + method + "\r\n"});
+  };
+  const RawAnswer made = send("POST", items + who, body);
+  ASSERT_EQ(made.status, 201) << made.body;
+  EXPECT_EQ(send("POST", items + "?author=Eve", body).status, 422) << "the key came with another author";
+  EXPECT_EQ(send("PATCH", items + "/1" + who, R"({"properties":{"z":7}})").status, 204);
+  EXPECT_EQ(send("DELETE", items + "/1" + who, "").status, 204);
+  const std::string before = digest();
+  EXPECT_EQ(send("PUT", items + "/2?author=" + std::string(201, 'a'), body).status, 413);
+  EXPECT_EQ(send("PUT", items + "/2?note=%01", body).status, 422);
+  EXPECT_EQ(digest(), before);
+  const Json page = Json::parse(server_.get("/tins/hill/revisions").body);
+  ASSERT_EQ(page["revisions"].size(), 3u);
+  for (const Json& revision : page["revisions"]) {
+    EXPECT_EQ(revision["author"], "Ad\u00e8le");
+    EXPECT_EQ(revision["note"], "a post");
+  }
+}
+
 TEST_F(HistoryTest, PagesWalkBackAndChangesWalkForth) {
   for (int i = 0; i < 7; ++i)
     ASSERT_EQ(edit(R"({"op":"set-z","id":1,"z":)" + std::to_string(i + 10) + "}").status, 200);
