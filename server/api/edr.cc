@@ -16,6 +16,7 @@
 #include "server/api/links.h"
 #include "server/api/routes.h"
 #include "server/api/surface_work.h"
+#include "server/http/field_value.h"
 #include "tin/query/profile.h"
 
 namespace server::api {
@@ -61,9 +62,9 @@ Result<Format> format_of(const Request& request) {
     return error(Code::kMalformed, "The formats are CoverageJSON and GeoJSON.", "query:f");
   }
   if (wants_html(request)) return Format::kPage;
-  const std::string accept = http::lower_case(request.header("accept"));
-  const auto geojson = accept.find("geo+json"), covjson = accept.find("cov+json");
-  return geojson < covjson ? Format::kGeoJson : Format::kCoverageJson;
+  const bool geojson = http::prefers(request.header("accept"), proto::formats::kGeoJsonMediaType,
+                                     proto::kCovJsonMediaType);
+  return geojson ? Format::kGeoJson : Format::kCoverageJson;
 }
 
 Result<Asked> read_asked(const app::Tin& tin, const Request& request, bool has_distance) {

@@ -9,6 +9,7 @@
 #include "server/api/change_stream.h"
 #include "server/api/edit_place.h"
 #include "server/api/routes.h"
+#include "server/http/field_value.h"
 
 namespace server::api {
 
@@ -126,7 +127,7 @@ Result<Response> changes(Context& context, const Request& request) {
   if (!tin) return tin.error();
   const auto limit = limit_of(request);
   if (!limit) return limit.error();
-  const bool streams = request.header("accept").find("text/event-stream") != std::string_view::npos;
+  const bool streams = http::prefers(request.header("accept"), "text/event-stream", kJson);
   const auto since = since_of(**tin, request, streams);
   if (!since) return since.error();
   if (streams) return stream(context, *tin, *since);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/http/field_value.h"
 #include "server/web/html.h"
 
 namespace server::api {
@@ -46,9 +47,14 @@ void make_absolute(proto::CollectionDocument& document, const std::string& base)
 }
 
 bool wants_html(const Request& request) {
-  const std::string accept = http::lower_case(request.header("accept"));
-  const auto html = accept.find("text/html"), json = accept.find("json");
-  return html != std::string::npos && (json == std::string::npos || html < json);
+  constexpr std::string_view kHtml = "text/html";
+  const std::string_view accept = request.header("accept");
+  const auto accepted = http::parse_preferences(accept);
+  // JSON has many names here: people get HTML where their browser puts it before all of them.
+  return accepted && http::prefers(accept, kHtml, kJson) &&
+         std::all_of(accepted->begin(), accepted->end(), [&](const http::Preference& one) {
+           return !one.name.ends_with("json") || http::prefers(accept, kHtml, one.name);
+         });
 }
 
 Response negotiated(const Request& request, std::string json, std::string_view json_type, const HtmlPage& page) {

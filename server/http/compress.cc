@@ -4,11 +4,11 @@
 #include <zstd.h>
 
 #include <array>
-#include <charconv>
 #include <new>
 #include <optional>
 #include <stdexcept>
 
+#include "server/http/field_value.h"
 #include "tin/base/check.h"
 
 namespace server::http {
@@ -123,26 +123,6 @@ class CompressingSource final : public BodySource {
   bool ended_ = false;
 };
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-/// The weight of "gzip;q=0.5"; nothing if it is malformed.
-std::optional<double> weight_of(std::string_view parameters) {
-  if (parameters.empty()) return 1.0;
-  parameters = trimmed(parameters);
-  if (!parameters.starts_with("q=") && !parameters.starts_with("Q=")) return std::nullopt;
-  parameters.remove_prefix(2);
-  double weight = 0;
-  const auto [end, failure] = std::from_chars(parameters.data(), parameters.data() + parameters.size(),
-                                              weight, std::chars_format::fixed);
-  if (failure != std::errc() || end != parameters.data() + parameters.size() || !(weight >= 0 && weight <= 1))
-    return std::nullopt;
-  return weight;
-}
-
 }  // namespace
 
 std::string_view encoding_name(Encoding encoding) {
@@ -150,15 +130,10 @@ std::string_view encoding_name(Encoding encoding) {
 }
 
 Encoding choose_encoding(std::string_view field) {
+  const auto accepted = parse_preferences(field);
+  if (!accepted) return Encoding::kIdentity;
   std::optional<double> gzip, zstd, any;
-  while (!field.empty()) {
-    const std::size_t comma = std::min(field.find(','), field.size());
-    const std::string_view item = field.substr(0, comma);
-    field.remove_prefix(std::min(comma + 1, field.size()));
-    const std::size_t semicolon = std::min(item.find(';'), item.size());
-    const std::string name = lower_case(trimmed(item.substr(0, semicolon)));
-    const auto weight = weight_of(item.substr(std::min(semicolon + 1, item.size())));
-    if (!weight) return Encoding::kIdentity;
+  for (const auto& [name, weight] : *accepted) {
     if (name == "gzip" || name == "x-gzip") gzip = weight;
     if (name == "zstd") zstd = weight;
     if (name == "*") any = weight;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "server/http/field_value.h"
+
 namespace server::http {
 namespace {
 
@@ -25,13 +27,6 @@ bool is_field_value(std::string_view text) {
     const auto byte = static_cast<unsigned char>(c);
     return byte == '\t' || (byte >= 0x20 && byte != 0x7f);
   });
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
 Refusal bad(std::string detail) {
