@@ -52,7 +52,7 @@ struct LimitConfig {
 /// What the process that reads an uploaded file may use up.
 struct DecoderConfig {
   std::int64_t memory_bytes = std::int64_t{4} << 30;  // of address space, some 170 MB of libraries included
-  std::int64_t file_bytes = 256 << 20;                // of a temporary file
+  std::int64_t file_bytes = std::int64_t{8} << 30;    // of a temporary file: an archive's entry that is unpacked
   std::int64_t cpu_seconds = 300;
   std::int64_t seconds = 600;  // in all
   friend bool operator==(const DecoderConfig&, const DecoderConfig&) = default;

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -43,7 +44,7 @@ Result<void> set_limits(const DecoderLimits& limits) {
   const auto cpu_seconds = static_cast<std::uint64_t>(limits.cpu_seconds);
   const bool set = (kSanitized || limit(RLIMIT_AS, limits.memory_bytes)) && limit(RLIMIT_CPU, cpu_seconds) &&
                    limit(RLIMIT_FSIZE, limits.file_bytes) && limit(RLIMIT_NOFILE, kDescriptors) &&
-                   limit(RLIMIT_CORE, 0);
+                   limit(RLIMIT_CORE, 0) && std::signal(SIGXFSZ, SIG_DFL) != SIG_ERR;  // the server ignores it
   if (!set) return refused("limits");
   return {};
 }

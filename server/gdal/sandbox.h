@@ -12,7 +12,7 @@ namespace server::gdal {
 struct DecoderLimits {
   std::uint64_t memory_bytes = std::uint64_t{4}
                                << 30;  // of address space, its libraries (some 170 MB) included
-  std::uint64_t file_bytes = std::uint64_t{256} << 20;  // of a file that it writes in its own folder
+  std::uint64_t file_bytes = std::uint64_t{8} << 30;    // of a file that it writes in its own folder
   int cpu_seconds = 300;
   int seconds = 600;  // in all, after which it is killed
 };

@@ -2,9 +2,11 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
+#include "server/gdal/decoder.h"
 #include "server/gdal/library.h"
 #include "tests/server/gdal/support.h"
 
@@ -93,6 +95,22 @@ TEST_F(ShapefileTest, AnArchiveUnpacksUpToTheLimit) {
   EXPECT_EQ(import_error(zip({{"a.shp", shape}}), options).code, Code::kTooLarge);
   options.max_unpacked_bytes = 1 << 20;
   EXPECT_EQ(import_error(zip({{"a.shp", std::string(64 << 20, '\0')}}), options).code, Code::kTooLarge);
+}
+
+TEST_F(ShapefileTest, AnEntryBeyondTheDecodersFilesIsTooLarge) {
+  // As the server has it; the decoder must not inherit that.
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  const auto archive = zip({{"a.shp", std::string(2 << 20, '\0')}});
+  Decoder decoder{TINSMITH_PROGRAM, {}};
+  decoder.limits.file_bytes = 1 << 20;
+  const auto refused = decoder.import_file(archive, {}, nullptr);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, Code::kTooLarge) << refused.error().message;
+  decoder.limits.file_bytes = 2 << 20;
+  const auto damaged = decoder.import_file(archive, {}, nullptr);
+  ASSERT_FALSE(damaged.ok());
+  EXPECT_EQ(damaged.error().code, Code::kMalformed) << damaged.error().message;
+  std::signal(SIGXFSZ, before);
 }
 
 }  // namespace
