@@ -23,7 +23,7 @@ struct Context {
         uploads(with.limits.uploads_at_once),
         exports(with.limits.exports_at_once),
         waiting(with.jobs.sync_waiting),
-        tiles(static_cast<std::size_t>(with.limits.tile_cache_bytes)),
+        tiles(static_cast<std::size_t>(with.limits.tile_cache_bytes), c.memory()),
         edits(with.limits.edits_at_once),
         listeners(with.limits.listeners) {}
 

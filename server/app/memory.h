@@ -38,6 +38,11 @@ class MemoryBudget {
     Lease(MemoryBudget& budget, std::uint64_t bytes) : budget_(&budget), bytes_(bytes) {}
     Lease(Lease&& other) noexcept : budget_(std::exchange(other.budget_, nullptr)), bytes_(other.bytes_) {}
     Lease& operator=(Lease&&) = delete;
+    /// Takes so much from now on, whether there is room or not: see check().
+    void resize(std::uint64_t bytes) {
+      budget_->leased_ += bytes - bytes_;
+      bytes_ = bytes;
+    }
     ~Lease() {
       if (budget_ != nullptr) budget_->leased_ -= bytes_;
     }

@@ -202,21 +202,21 @@ std::shared_ptr<const CachedTile> TileCache::find(const app::Tin& tin, std::uint
 void TileCache::keep(Entry entry) {
   const std::lock_guard lock(mutex_);
   ++statistics_.made;
+  if (const auto known = by_key_.find(entry.key); known != by_key_.end()) drop(known->second);
   const std::size_t size = entry.tile->bytes.size();
-  if (const auto known = by_key_.find(entry.key); known != by_key_.end()) {
-    statistics_.bytes -= known->second->tile->bytes.size();
-    entries_.erase(known->second);
-    by_key_.erase(known);
+  if (size <= max_bytes_ && memory_.check(size)) {
+    entries_.push_front(std::move(entry));
+    by_key_[entries_.front().key] = entries_.begin();
+    statistics_.bytes += size;
+    while (statistics_.bytes > max_bytes_) drop(std::prev(entries_.end()));
   }
-  if (size > max_bytes_) return;
-  entries_.push_front(std::move(entry));
-  by_key_[entries_.front().key] = entries_.begin();
-  statistics_.bytes += size;
-  while (statistics_.bytes > max_bytes_) {
-    statistics_.bytes -= entries_.back().tile->bytes.size();
-    by_key_.erase(entries_.back().key);
-    entries_.pop_back();
-  }
+  lease_.resize(statistics_.bytes);
+}
+
+void TileCache::drop(std::list<Entry>::iterator entry) {
+  statistics_.bytes -= entry->tile->bytes.size();
+  by_key_.erase(entry->key);
+  entries_.erase(entry);
 }
 
 TileCache::Statistics TileCache::statistics() const {

@@ -25,8 +25,10 @@ struct CachedTile {
 /// Thread-safe. Two who ask for the same missing tile at once both make it.
 class TileCache {
  public:
-  /// `max_bytes` bounds what is kept; 0 keeps nothing.
-  explicit TileCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+  /// `max_bytes` bounds what is kept; 0 keeps nothing. What is kept counts as memory of `memory`, which must
+  /// outlive the cache; nothing more is kept when that is full.
+  TileCache(std::size_t max_bytes, app::MemoryBudget& memory)
+      : max_bytes_(max_bytes), memory_(memory), lease_(memory, 0) {}
 
   /// The tile of the TIN's present revision. Errors: kNotFound: there is no such tile; as make_terrain_tile(), picture_tile().
   tin::base::Result<std::shared_ptr<const CachedTile>> get(const app::Tin& tin, TileKind kind, const TileId& id);
@@ -60,13 +62,16 @@ class TileCache {
   std::shared_ptr<const CachedTile> find(const app::Tin& tin, std::uint64_t revision, const std::string& key,
                                          const std::optional<Tileset>& tiles);
   void keep(Entry entry);
+  void drop(std::list<Entry>::iterator entry);
 
   const std::size_t max_bytes_;
+  const app::MemoryBudget& memory_;
   mutable std::mutex mutex_;
   std::list<Entry> entries_;  // the one used last stands first
   std::unordered_map<std::string, std::list<Entry>::iterator> by_key_;
   std::list<KnownTileset> tilesets_;  // of a few TINs
   Statistics statistics_;
+  app::MemoryBudget::Lease lease_;
 };
 
 /// Of gzip, RFC 1952, with nothing in its head that changes from run to run.

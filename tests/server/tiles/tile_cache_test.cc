@@ -41,7 +41,9 @@ class TileCacheTest : public testing::Test {
   tests::support::TempDir folder_;
   std::unique_ptr<server::app::Catalogue> catalogue_;
   std::shared_ptr<server::app::Tin> tin_;
-  TileCache cache_{64 << 20};
+  std::uint64_t terrains_bytes_ = 0;  // as the budget sees it
+  server::app::MemoryBudget memory_{100 << 20, [this] { return terrains_bytes_; }};
+  TileCache cache_{64 << 20, memory_};
 };
 
 TEST_F(TileCacheTest, ATileIsMadeOnceAndAgainWhereAnEditCameNear) {
@@ -69,7 +71,7 @@ TEST_F(TileCacheTest, ATileIsMadeOnceAndAgainWhereAnEditCameNear) {
 TEST_F(TileCacheTest, WhatIsKeptIsWhatWouldBeMade) {
   support::Random random(support::seed());
   SCOPED_TRACE(support::seed());
-  TileCache forgetful(0);
+  TileCache forgetful(0, memory_);
   for (int round = 0; round < 12; ++round) {
     insert(460000 + static_cast<double>(random() % 22000) - 11000, 5240000 + static_cast<double>(random() % 17000) - 8500,
            static_cast<double>(random() % 1000));
@@ -121,19 +123,35 @@ TEST_F(TileCacheTest, EveryTenthLevelListsTheTilesBelow) {
             std::string::npos);
   // A vertex far out widens the terrain's extent, and so what lies below tiles that no triangle of it
   // touches.
-  TileCache forgetful(0);
+  TileCache forgetful(0, memory_);
   insert(500000, 5240000, 600);
   for (const TileId& id : listing)
     EXPECT_EQ(get(TileKind::kTerrain, id)->bytes, (*forgetful.get(*tin_, TileKind::kTerrain, id))->bytes);
 }
 
 TEST_F(TileCacheTest, MemoryIsBounded) {
-  TileCache small(200'000);
+  TileCache small(200'000, memory_);
   for (std::uint32_t x = 0; x < 8; ++x) {
     ASSERT_TRUE(small.get(*tin_, TileKind::kTerrarium, {13, 4285 + x, 2870}).ok());
     EXPECT_LE(small.statistics().bytes, 200'000U);
   }
   EXPECT_EQ(small.statistics().made, 8U);
+}
+
+TEST_F(TileCacheTest, WhatIsKeptCountsAsMemoryAndIsNotKeptWhereThatIsFull) {
+  const auto ids = some_tiles();
+  {
+    TileCache cache(64 << 20, memory_);
+    ASSERT_TRUE(cache.get(*tin_, TileKind::kTerrain, ids[0]).ok());
+    EXPECT_GT(cache.statistics().bytes, 0U);
+    EXPECT_EQ(memory_.used(), cache.statistics().bytes);
+  }
+  EXPECT_EQ(memory_.used(), 0U) << "given back";
+  terrains_bytes_ = memory_.limit();
+  server::app::MemoryBudget full(memory_.limit(), [this] { return terrains_bytes_; });
+  TileCache cache(64 << 20, full);
+  ASSERT_TRUE(cache.get(*tin_, TileKind::kTerrain, ids[0]).ok());
+  EXPECT_EQ(cache.statistics().bytes, 0U);
 }
 
 TEST_F(TileCacheTest, WhatThereIsNotIsNotFound) {
