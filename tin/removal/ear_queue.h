@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tin/exact/power.h"
+#include "tin/mesh/page_allocator.h"
 #include "tin/removal/star.h"
 
 namespace tin::removal {
@@ -38,23 +39,18 @@ class EarQueue {
   std::span<const std::uint32_t> remains() const { return remains_; }
 
  private:
-  struct Node {
+  /// In a line of memory of its own: nodes are met in the order of their ears' powers.
+  struct alignas(64) Node {
     std::uint32_t previous, next;
-    std::uint32_t in_heap;  // index there, kNowhere if it is no ear
-  };
-  /// The present ear at a node, with its corners as they were when its power was found: between the renewals
-  /// of two neighbours one of them is out of date, and the heap's order must not break.
-  struct Candidate {
-    exact::Power power;
-    std::uint32_t previous, next;
+    std::uint32_t in_set;  // index there, kNowhere if it is no ear; only while scanning
+    exact::Power power;    // of the present ear at the node
   };
   struct Entry {
     double approximate;
-    std::uint32_t node;
+    std::uint32_t node;  // kNowhere: no ear
   };
-  /// Each entry that moves writes to its node, wherever that is: a flat heap moves fewer.
-  static constexpr std::size_t kArity = 4;
-  static constexpr std::uint32_t kScanLimit = 12;  // up to this degree a scan beats the heap
+  static constexpr Entry kNoEar{0x1p1000, kNowhere};  // after all that are
+  static constexpr std::uint32_t kScanLimit = 12;     // up to this degree a scan beats the tree
 
   void begin(const Star& star);
   template <class Tally>
@@ -65,25 +61,28 @@ class EarQueue {
   bool comes_before(const Star& star, const Entry& a, const Entry& b, Tally& tally) const;
   template <class Tally>
   std::uint32_t smallest(const Star& star, Tally& tally) const;
+  bool is_ear(std::uint32_t node) const;
+  void put(const Entry& entry);
+  void withdraw(std::uint32_t node);
   template <class Tally>
-  void place(const Star& star, const Entry& entry, Tally& tally);
+  void play(const Star& star, std::size_t match, Tally& tally);
   template <class Tally>
-  void drop(const Star& star, std::uint32_t node, Tally& tally);
-  template <class Tally>
-  void sift(const Star& star, std::size_t hole, const Entry& entry, Tally& tally);
-  template <class Tally>
-  std::size_t climb(const Star& star, std::size_t hole, std::size_t top, const Entry& entry, Tally& tally);
-  void put(std::size_t i, const Entry& entry);
+  void settle(const Star& star, std::uint32_t a, std::uint32_t b, std::uint32_t c, Tally& tally);
+  void fetch_ahead(const Star& star) const;
   void cut(std::uint32_t node);
 
   Renewal renewal_;
-  bool use_heap_ = false;
   std::uint32_t left_ = 0;
   std::uint32_t some_node_ = 0;  // a node that is still there
-  std::vector<Node> ring_;
-  std::vector<Candidate> candidates_;       // by node
+  mesh::PageVector<Node> ring_;
   std::vector<exact::PowerMinors> minors_;  // by node, of the ear's first two corners; only when updating
-  std::vector<Entry> heap_;                 // a heap, or just a set while scanning is cheaper
+  std::vector<Entry> set_;                  // the ears, while scanning
+  /// The priority queue of large holes, a tournament: node n's ear stands in leaves_ + n, and every inner
+  /// place holds the winner of the two below it. What an ear meets on its way to the top depends on its node
+  /// alone, so the ways of neighbours, which change together, soon become one, and memory is asked for all of
+  /// it at once; a heap's entries move, and each tells its node where to, anywhere in memory.
+  mesh::PageVector<Entry> tree_;
+  std::size_t leaves_ = 0;  // a power of two; 0: scanning
   std::vector<Ear> ears_;
   std::vector<std::uint32_t> remains_;
 };
