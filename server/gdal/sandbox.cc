@@ -81,6 +81,11 @@ Result<void> filter_system_calls() {
   if (!filter) return refused("seccomp");
   int failed = 0;
   for (const int call : kAllowed) failed |= seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0);
+  if (kSanitized) {
+    // How the sanitizers' runtime asks whether memory can be read.
+    for (const int call : {SCMP_SYS(pipe), SCMP_SYS(pipe2)})
+      failed |= seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0);
+  }
   // Threads, but no processes. clone3 hides its flags from filters; without it glibc takes clone.
   failed |= seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(clone), 1,
                              SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD));
