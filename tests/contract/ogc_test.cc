@@ -345,7 +345,8 @@ TEST_F(OgcTest, PeopleGetPagesUnderTheSameUrls) {
 TEST(PublicUrlTest, StandsBeforeEveryLink) {
   TestServer server([](server::Config& config) { config.public_url = "https://terrain.example.org/t"; });
   ASSERT_EQ(server.post_json("/tins", kHill).status, 201);
-  for (const Json& link : server.tin("hill").at("links")) {
+  const Json document = server.tin("hill");
+  for (const Json& link : document.at("links")) {
     EXPECT_TRUE(link.at("href").get<std::string>().starts_with("https://terrain.example.org/t/tins/hill")) << link;
   }
 }
