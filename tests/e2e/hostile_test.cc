@@ -14,6 +14,12 @@
 namespace tests::e2e {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr std::uint64_t kMostGrowth = 600'000'000;  // what was freed is kept for a while there
+#else
+constexpr std::uint64_t kMostGrowth = 200'000'000;
+#endif
+
 TEST(HostileClientsTest, OthersAreServedAllTheSame) {
   load::raise_descriptors();
   const load::Server server(TINSMITH_PROGRAM, load::hostile_config());
@@ -33,7 +39,7 @@ TEST(HostileClientsTest, OthersAreServedAllTheSame) {
     EXPECT_EQ(r.others.failures, 0U) << r.name;
     // At most double; the rest is what other tests on the same cores take from time to time.
     EXPECT_LT(p99, std::max(2 * alone, alone + 150)) << r.name;
-    EXPECT_LT(r.resident_bytes, results.front().resident_bytes + 200'000'000) << r.name;
+    EXPECT_LT(r.resident_bytes, results.front().resident_bytes + kMostGrowth) << r.name;
   }
 }
 
