@@ -149,13 +149,9 @@ Result<proto::ContourInputs> inputs_of(const Request& request, const LimitConfig
   auto levels = levels_of(request, static_cast<std::size_t>(limits.contour_levels));
   if (!levels) return levels.error();
   inputs.levels = std::move(*levels);
-  if (const auto text = request.query_value("bbox")) {
-    const auto box = proto::parse_bbox(*text, "query:bbox");
-    if (!box) return box.error();
-    if (box->min_z)
-      return error(Code::kInvalidValue, "The box is one of positions: four numbers.", "query:bbox");
-    inputs.box = *box;
-  }
+  const auto box = flat_box(request);
+  if (!box) return box.error();
+  inputs.box = *box;
   const auto manner = manner_of(request);
   if (!manner) return manner.error();
   inputs.manner = *manner;
@@ -169,7 +165,7 @@ Result<Response> contours(Context& context, const Request& request) {
   const auto inputs = inputs_of(request, limits);
   if (!inputs) return inputs.error();
   const Slot slot(context.exports);
-  if (!slot.taken()) return error(Code::kTooMany, "Too many long questions are being answered; try again.");
+  if (!slot.taken()) return too_many_questions();
   const app::Version version = (*tin)->version();
   auto file = ContourFile::begin(version, *inputs, limits, "query:");
   if (!file) return file.error();

@@ -1,8 +1,6 @@
 // /tins/{tin}/collections/surface: the surface as a coverage, sampled on the grid that is asked for.
 #include "server/api/coverage.h"
 
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -14,6 +12,7 @@
 #include "server/api/edr.h"
 #include "server/api/export_grid.h"
 #include "server/api/feature_query.h"
+#include "server/api/file_body.h"
 #include "server/api/links.h"
 #include "server/api/routes.h"
 #include "server/gdal/geotiff.h"
@@ -190,43 +189,31 @@ class Rows {
   std::vector<double> band_;
 };
 
-/// Removes a file that did not become an answer.
-struct Unfinished {
-  std::filesystem::path path;
-  ~Unfinished() {
-    std::error_code ignored;
-    if (!path.empty()) std::filesystem::remove(path, ignored);
-  }
-};
-
-Result<http::Body> write_raster(Context& context, const Request& request, const Terrain& terrain, const Wanted& wanted) {
-  const Slot slot(context.exports);
-  if (!slot.taken()) return error(Code::kTooMany, "Too many rasters are being made; try again.");
-  auto sampler = tiles::Sampler::create(terrain, wanted.crs.name == proto::kCrs84 ? "EPSG:4326" : wanted.crs.name);
-  if (!sampler) return sampler.error();
-  Rows rows(std::move(*sampler), wanted, terrain.frame().vertical_unit_m);
-  gdal::RasterSpec spec;
-  spec.width = wanted.width;
-  spec.height = wanted.height;
-  spec.crs = wanted.crs.name == proto::kCrs84 ? "EPSG:4326" : wanted.crs.name;
-  spec.geotransform = {wanted.extent.min_x, (wanted.extent.max_x - wanted.extent.min_x) / static_cast<double>(wanted.width), 0,
-                       wanted.extent.max_y, 0, -(wanted.extent.max_y - wanted.extent.min_y) / static_cast<double>(wanted.height)};
-  spec.nodata = kNoData;
-  spec.vertical_unit = terrain.frame().vertical_unit;
-  static std::atomic<std::uint64_t> made{0};
-  const auto folder = context.config.data_dir / "exports";
-  std::filesystem::create_directories(folder);
-  Unfinished file{folder / ("coverage-" + std::to_string(made++) + ".tif")};
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(context.config.limits.export_seconds);
-  const auto source = [&](std::int64_t row, std::span<double> values) -> Result<void> {
-    if (request.is_aborted()) return error(Code::kCancelled, "Nobody waits for this answer any more.");
-    if (std::chrono::steady_clock::now() > end)
-      return error(Code::kTooLarge, "Making the raster takes too long: ask for fewer pixels.");
-    rows.read(row, values);
-    return {};
-  };
-  if (auto written = gdal::write_geotiff(file.path, spec, source, nullptr); !written) return written.error();
-  return http::Body(http::FileBody{std::exchange(file.path, {}), true});
+Result<http::Body> raster(Context& context, const Request& request, const Terrain& terrain,
+                          const Wanted& wanted) {
+  const Patience patience(request, context.config.limits.export_seconds);
+  return file_body(context, ".tif", [&](const std::filesystem::path& file) -> Result<void> {
+    const std::string crs = wanted.crs.name == proto::kCrs84 ? "EPSG:4326" : wanted.crs.name;
+    auto sampler = tiles::Sampler::create(terrain, crs);
+    if (!sampler) return sampler.error();
+    Rows rows(std::move(*sampler), wanted, terrain.frame().vertical_unit_m);
+    const auto& box = wanted.extent;
+    const auto columns = static_cast<double>(wanted.width), lines = static_cast<double>(wanted.height);
+    gdal::RasterSpec spec;
+    spec.width = wanted.width;
+    spec.height = wanted.height;
+    spec.crs = crs;
+    spec.geotransform = {box.min_x, (box.max_x - box.min_x) / columns, 0, box.max_y,
+                         0,         -(box.max_y - box.min_y) / lines};
+    spec.nodata = kNoData;
+    spec.vertical_unit = terrain.frame().vertical_unit;
+    const auto source = [&](std::int64_t row, std::span<double> values) -> Result<void> {
+      if (auto wait = patience.check(); !wait) return wait;
+      rows.read(row, values);
+      return {};
+    };
+    return gdal::write_geotiff(file, spec, source, nullptr);
+  });
 }
 
 Result<Response> coverage(Context& context, const Request& request) {
@@ -236,7 +223,7 @@ Result<Response> coverage(Context& context, const Request& request) {
   if (!has_surface((*tin)->summary())) return error(Code::kNotFound, "The TIN has no surface with a place on the globe.");
   const auto wanted = read_wanted(context, request, *version.terrain);
   if (!wanted) return wanted.error();
-  auto body = write_raster(context, request, *version.terrain, *wanted);
+  auto body = raster(context, request, *version.terrain, *wanted);
   if (!body) return body.error();
   Response response;
   response.headers = {{"Content-Type", std::string(kTiff)},

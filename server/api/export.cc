@@ -1,5 +1,4 @@
 // GET /tins/{tin}/export: the whole TIN, or a part, as a file.
-#include <atomic>
 #include <utility>
 
 #include "proto/crs_uri.h"
@@ -11,27 +10,7 @@ namespace server::api {
 using tin::base::Code;
 using tin::base::error;
 
-Result<void> Patience::check() const {
-  if (request_.is_aborted()) return error(Code::kCancelled, "Nobody waits for this answer any more.");
-  if (std::chrono::steady_clock::now() < end_) return {};
-  return error(Code::kTooLarge, "Making the file takes more than " + std::to_string(seconds_) +
-                                    " s, the limit here: ask for a smaller box or larger cells.");
-}
-
-tin::base::Error too_many_exports() {
-  return error(Code::kTooMany, "Too many files are being made; try again.");
-}
-
 namespace {
-
-/// Removes a file that did not become an answer.
-struct Unfinished {
-  std::filesystem::path path;
-  ~Unfinished() {
-    std::error_code ignored;
-    if (!path.empty()) std::filesystem::remove(path, ignored);
-  }
-};
 
 /// Parameters that would have no effect: saying so beats ignoring them.
 Result<void> check_format_parameters(const Request& request, const ExportFormat& format) {
@@ -142,18 +121,6 @@ Result<Response> export_tin(Context& context, const Request& request) {
 }
 
 }  // namespace
-
-Result<http::Body> file_body(ExportTask& task, std::string_view suffix,
-                             const std::function<Result<void>(const std::filesystem::path&)>& write) {
-  const Slot slot(task.context.exports);
-  if (!slot.taken()) return too_many_exports();
-  static std::atomic<std::uint64_t> exports{0};
-  const auto folder = task.context.config.data_dir / "exports";
-  std::filesystem::create_directories(folder);
-  Unfinished file{folder / (std::to_string(exports++) + std::string(suffix))};
-  if (auto written = write(file.path); !written) return written.error();
-  return http::Body(http::FileBody{std::exchange(file.path, {}), true});
-}
 
 void add_export(http::Router& router, Context& context) {
   router.add({.method = http::Method::kGet,

@@ -83,7 +83,7 @@ Result<http::Body> vector_file(ExportTask& task, gdal::VectorDriver driver,
   const auto positions = positions_of(task, spec.crs);
   if (!positions) return positions.error();
   if (positions->identity()) spec.note = proto::formats::frame_note(task.terrain().frame());
-  return file_body(task, task.format.suffix, [&](const std::filesystem::path& out) -> Result<void> {
+  return file_body(task.context, task.format.suffix, [&](const std::filesystem::path& out) -> Result<void> {
     auto file = gdal::VectorFile::create(out, spec);
     if (!file) return file.error();
     for (const gdal::VectorLayer layer : layers) {

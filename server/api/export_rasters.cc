@@ -13,7 +13,7 @@ using Write = Result<void> (*)(const std::filesystem::path& out, const gdal::Ras
                                const gdal::RowSource& rows);
 
 Result<http::Body> raster(ExportTask& task, Write write) {
-  return file_body(task, task.format.suffix,
+  return file_body(task.context, task.format.suffix,
                    [&task, write](const std::filesystem::path& file) -> Result<void> {
                      auto grid = ExportGrid::plan(task.terrain(), task.wanted);
                      if (!grid) return grid.error();

@@ -36,14 +36,8 @@ Result<Response> profile(Context& context, const Request& request) {
 Result<Response> profile_of_many(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
-  if (auto json = require_json(request); !json) return json.error();
-  const auto document = proto::Document::parse(request.body);
-  if (!document) return document.error();
-  const auto object = document->root().object({"positions", "crs", "voids"});
-  if (!object) return object.error();
   const auto& limits = context.config.limits;
-  const auto inputs =
-      proto::read_positions_inputs(*object, static_cast<std::size_t>(limits.positions_per_request));
+  const auto inputs = positions_of_body(request, limits);
   if (!inputs) return inputs.error();
   const app::Version version = (*tin)->version();
   return tagged(profile_answer(version, *inputs, limits, "/"), **tin, version.revision, request);

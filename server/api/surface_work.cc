@@ -167,23 +167,45 @@ Result<double> number_or(const Request& request, const std::string& name, double
   return proto::parse_number(*text, "query:" + name);
 }
 
-Result<proto::AreaOfInterest> area_of(const Request& request, const LimitConfig& limits) {
-  proto::AreaOfInterest area;
-  if (const auto text = request.query_value("bbox")) {
-    const auto box = proto::parse_bbox(*text, "query:bbox");
-    if (!box) return box.error();
-    if (box->min_z)
-      return error(Code::kInvalidValue, "The box is one of positions: four numbers.", "query:bbox");
-    area.box = *box;
-  }
+Result<std::optional<proto::Bbox>> flat_box(const Request& request) {
+  const auto text = request.query_value("bbox");
+  if (!text) return std::optional<proto::Bbox>();
+  const auto box = proto::parse_bbox(*text, "query:bbox");
+  if (!box) return box.error();
+  if (box->min_z)
+    return error(Code::kInvalidValue, "The box is one of positions: four numbers.", "query:bbox");
+  return std::optional(*box);
+}
+
+Result<proto::AreaInputs> area_inputs_of(const Request& request, const LimitConfig& limits) {
+  proto::AreaInputs inputs;
+  const auto box = flat_box(request);
+  if (!box) return box.error();
+  inputs.area.box = *box;
   if (const auto text = request.query_value("polygon")) {
-    if (area.box) return error(Code::kInvalidValue, "Either a polygon or a bbox, not both.", "query:polygon");
+    if (*box) return error(Code::kInvalidValue, "Either a polygon or a bbox, not both.", "query:polygon");
     auto ring =
         proto::parse_positions(*text, static_cast<std::size_t>(limits.polygon_positions), "query:polygon");
     if (!ring) return ring.error();
-    area.polygon.push_back(std::move(*ring));
+    inputs.area.polygon.push_back(std::move(*ring));
   }
-  return area;
+  auto manner = manner_of(request);
+  if (!manner) return manner.error();
+  inputs.manner = std::move(*manner);
+  return inputs;
+}
+
+Result<proto::PositionsInputs> positions_of_body(const Request& request, const LimitConfig& limits) {
+  if (auto json = require_json(request); !json) return json.error();
+  const auto document = proto::Document::parse(request.body);
+  if (!document) return document.error();
+  const auto object = document->root().object({"positions", "crs", "voids"});
+  if (!object) return object.error();
+  return proto::read_positions_inputs(*object, static_cast<std::size_t>(limits.positions_per_request));
+}
+
+tin::base::Error too_many_questions() {
+  return error(Code::kTooMany, "Too many long questions are being answered; try again.");
 }
 
 Result<Response> tagged(Result<std::string> body, const app::Tin& tin, std::uint64_t revision,

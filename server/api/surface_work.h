@@ -64,8 +64,16 @@ Result<proto::Manner> manner_of(const Request& request);
 /// A number that must be there, or one that may be. Errors: kMalformed, kNotFinite.
 Result<double> required_number(const Request& request, const std::string& name);
 Result<double> number_or(const Request& request, const std::string& name, double otherwise);
-/// The parameters "bbox" and "polygon". Errors: kMalformed, kInvalidValue (both), kTooLarge.
-Result<proto::AreaOfInterest> area_of(const Request& request, const LimitConfig& limits);
+/// The parameter "bbox" where only x and y count. Errors: kMalformed, kInvalidValue.
+Result<std::optional<proto::Bbox>> flat_box(const Request& request);
+/// The parameters "bbox" and "polygon", and those of manner_of(). Errors: kMalformed, kInvalidValue (both),
+/// kTooLarge.
+Result<proto::AreaInputs> area_inputs_of(const Request& request, const LimitConfig& limits);
+/// The members "positions", "crs" and "voids" of a body of JSON. Errors: as proto::read_positions_inputs().
+Result<proto::PositionsInputs> positions_of_body(const Request& request, const LimitConfig& limits);
+
+/// What takes all triangles into account has a bounded number of places, beside the rasters.
+tin::base::Error too_many_questions();
 
 /// A JSON body, or its error, as the answer about a revision.
 Result<Response> tagged(Result<std::string> body, const app::Tin& tin, std::uint64_t revision,

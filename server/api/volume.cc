@@ -5,44 +5,31 @@
 
 namespace server::api {
 
-using tin::base::Code;
-using tin::base::error;
-
 namespace {
-
-/// These take all triangles into account: a bounded number at a time, beside the rasters.
-tin::base::Error busy() {
-  return error(Code::kTooMany, "Too many long questions are being answered; try again.");
-}
 
 Result<Response> volume(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
   const auto level = required_number(request, "level");
   if (!level) return level.error();
-  auto area = area_of(request, context.config.limits);
-  if (!area) return area.error();
-  const auto manner = manner_of(request);
-  if (!manner) return manner.error();
+  auto inputs = area_inputs_of(request, context.config.limits);
+  if (!inputs) return inputs.error();
   const Slot slot(context.exports);
-  if (!slot.taken()) return busy();
+  if (!slot.taken()) return too_many_questions();
   const app::Version version = (*tin)->version();
-  return tagged(volume_answer(version, {*level, std::move(*area), *manner}, "query:", nullptr), **tin,
-                version.revision, request);
+  const proto::VolumeInputs all{*level, std::move(inputs->area), std::move(inputs->manner)};
+  return tagged(volume_answer(version, all, "query:", nullptr), **tin, version.revision, request);
 }
 
 Result<Response> surface_area(Context& context, const Request& request) {
   const auto tin = context.catalogue.find(request.path_parameter("tin"));
   if (!tin) return tin.error();
-  auto area = area_of(request, context.config.limits);
-  if (!area) return area.error();
-  const auto manner = manner_of(request);
-  if (!manner) return manner.error();
+  const auto inputs = area_inputs_of(request, context.config.limits);
+  if (!inputs) return inputs.error();
   const Slot slot(context.exports);
-  if (!slot.taken()) return busy();
+  if (!slot.taken()) return too_many_questions();
   const app::Version version = (*tin)->version();
-  return tagged(surface_area_answer(version, {std::move(*area), *manner}, "query:", nullptr), **tin,
-                version.revision, request);
+  return tagged(surface_area_answer(version, *inputs, "query:", nullptr), **tin, version.revision, request);
 }
 
 }  // namespace

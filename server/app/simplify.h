@@ -8,16 +8,14 @@
 #include <vector>
 
 #include "server/app/catalogue.h"
+#include "tin/query/region.h"
 #include "tin/simplify/simplify.h"
 
 namespace server::app {
 
 /// Vertices that stay, as asked for.
 struct Protection {
-  struct Corner {
-    double x = 0, y = 0;  // in the TIN's CRS
-  };
-  using Polygon = std::vector<std::vector<Corner>>;  // rings; a position in an odd number of them is inside
+  using Polygon = std::vector<tin::query::Ring>;  // on the lattice; what is inside, tin::query::Inside says
   bool border = false;
   std::vector<VertexId> ids;
   std::vector<Polygon> polygons;

@@ -2,20 +2,8 @@
 # A GeoTIFF of 20,000 x 20,000 pixels over HTTP, and how much memory the server takes for it: big_geotiff.sh TINSMITH [SIDE]
 set -euo pipefail
 tinsmith=$1 side=${2:-20000}
-work=$(mktemp -d)
-server=
-cleanup() {
-  [ -z "$server" ] || { kill -TERM "$server" && wait "$server"; } 2>/dev/null || true
-  rm -rf "$work"
-}
-trap cleanup EXIT
-printf '{"limits":{"export_seconds":3600}}' >"$work/config.json"
-"$tinsmith" serve --config "$work/config.json" --listen 127.0.0.1:0 --data "$work/data" >"$work/out" 2>"$work/err" &
-server=$!
-for _ in $(seq 100); do
-  base=$(grep -o 'http://[0-9.:]*' "$work/out" | head -n 1) && break
-  sleep 0.1
-done
+. "$(dirname "${BASH_SOURCE[0]}")/../support/serve.sh"
+serve "$tinsmith" '{"limits":{"export_seconds":3600}}'
 {
   printf 'ncols 500\nnrows 500\nxllcorner 500000\nyllcorner 4500000\ncellsize 40\nNODATA_value -9999\n'
   awk 'BEGIN { srand(1); for (j = 0; j < 500; j++) { for (i = 0; i < 500; i++) printf "%.1f ", 200 + i / 4 - j / 2 + 20 * rand(); print "" } }'

@@ -8,7 +8,8 @@
 namespace tests::contract {
 namespace {
 
-constexpr const char* kHill = R"({"id":"hill","title":"A <hill>","crs":"EPSG:32617","duplicates":"reject",
+constexpr const char* kTitledHill =
+    R"({"id":"hill","title":"A <hill>","crs":"EPSG:32617","duplicates":"reject",
   "vertices":[[500000,4500000,10],[500100,4500000,12.5],[500000,4500100,11],[500100,4500100,14],[500050,4500040,20]]})";
 constexpr const char* kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 constexpr const char* kUtm = "http://www.opengis.net/def/crs/EPSG/0/32617";
@@ -19,7 +20,7 @@ const std::string kVertices = kCollections + "/vertices/items";
 
 class OgcTest : public testing::Test {
  protected:
-  OgcTest() { EXPECT_EQ(server_.post_json("/tins", kHill).status, 201); }
+  OgcTest() { EXPECT_EQ(server_.post_json("/tins", kTitledHill).status, 201); }
 
   Json json(const std::string& target) {
     const RawAnswer answer = server_.get(target);
@@ -344,7 +345,7 @@ TEST_F(OgcTest, PeopleGetPagesUnderTheSameUrls) {
 
 TEST(PublicUrlTest, StandsBeforeEveryLink) {
   TestServer server([](server::Config& config) { config.public_url = "https://terrain.example.org/t"; });
-  ASSERT_EQ(server.post_json("/tins", kHill).status, 201);
+  ASSERT_EQ(server.post_json("/tins", kTitledHill).status, 201);
   const Json document = server.tin("hill");
   for (const Json& link : document.at("links")) {
     EXPECT_TRUE(link.at("href").get<std::string>().starts_with("https://terrain.example.org/t/tins/hill")) << link;

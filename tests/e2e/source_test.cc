@@ -214,6 +214,11 @@ TEST_F(SourceTest, WhatIsProtectedStays) {
       "/processes/simplify/execution", R"({"inputs":{"tin":"dem","tolerance":1,"protect":[1,999999]}})");
   EXPECT_EQ(unknown.status, 422);
   EXPECT_NE(unknown.body.find("/inputs/protect/1"), std::string::npos) << unknown.body;
+  const RawAnswer beyond = served_->http().post_json(
+      "/processes/simplify/execution",
+      R"({"inputs":{"tin":"dem","tolerance":1,"protect":[{"type":"Polygon","coordinates":[[[0,0],[1e9,0],[0,1e9]]]}]}})");
+  EXPECT_EQ(beyond.status, 422) << beyond.body;
+  EXPECT_NE(beyond.body.find("/inputs/protect"), std::string::npos) << beyond.body;
 }
 
 TEST_F(SourceTest, FittedElevationsLandAreCertifiedAndCanBeUndone) {

@@ -5,31 +5,15 @@
 
 #include "proto/messages.h"
 #include "proto/processes/simplify.h"
+#include "tests/proto/expect_errors.h"
 #include "tests/support/schema_check.h"
 
 namespace {
 
+using tests_support::expect_errors;
 using tin::base::Code;
 using tin::base::Error;
 using tin::terrain::Duplicates;
-
-struct Wrong {
-  const char* body;
-  Code code;
-  const char* where;
-};
-
-template <class Read>
-void expect_errors(std::initializer_list<Wrong> cases, Read read) {
-  for (const Wrong& wrong : cases) {
-    const auto result = read(wrong.body);
-    ASSERT_FALSE(result.ok()) << wrong.body;
-    EXPECT_EQ(static_cast<int>(result.error().code), static_cast<int>(wrong.code))
-        << wrong.body << ": " << result.error().message;
-    EXPECT_EQ(result.error().where, wrong.where) << wrong.body;
-    EXPECT_FALSE(result.error().message.empty());
-  }
-}
 
 TEST(CreateTinTest, ReadsEveryMember) {
   const auto create =

@@ -3,38 +3,24 @@
 #include <gtest/gtest.h>
 
 #include "proto/processes/surface.h"
+#include "tests/proto/expect_errors.h"
 #include "tests/support/schema_check.h"
 
 namespace {
 
 using proto::Document;
 using tests_support::schema_violations;
+using tests_support::Wrong;
 using tin::base::Code;
 
-struct Wrong {
-  const char* body;
-  Code code;
-  const char* where;
-};
-
+/// `read` takes the object that a body is.
 template <class Read>
-void expect_errors(std::initializer_list<Wrong> cases, Read read) {
-  for (const Wrong& wrong : cases) {
-    const auto document = Document::parse(wrong.body);
-    tin::base::Error error;
-    if (!document) {
-      error = document.error();
-    } else {
-      const auto object = document->root().any_object();
-      ASSERT_TRUE(object.ok());
-      const auto result = read(*object);
-      ASSERT_FALSE(result.ok()) << wrong.body;
-      error = result.error();
-    }
-    EXPECT_EQ(static_cast<int>(error.code), static_cast<int>(wrong.code))
-        << wrong.body << ": " << error.message;
-    EXPECT_EQ(error.where, wrong.where) << wrong.body;
-  }
+void expect_refused(std::initializer_list<Wrong> cases, Read read) {
+  tests_support::expect_errors(cases, [&](const char* body) -> decltype(read(std::declval<proto::Object>())) {
+    const auto document = Document::parse(body);
+    if (!document) return document.error();
+    return read(*document->root().any_object());
+  });
 }
 
 void expect_fits(const std::string& schema, const std::string& json) {
@@ -74,7 +60,7 @@ TEST(PolygonTest, IsARingOrAnOutlineWithHoles) {
 
 TEST(SurfaceInputsTest, ErrorsSayWhere) {
   const auto area = [](const proto::Object& object) { return proto::read_area_inputs(object, 7); };
-  expect_errors(
+  expect_refused(
       {{R"({"polygon":1})", Code::kMalformed, "/polygon"},
        {R"({"polygon":[[0,0],[1]]})", Code::kMalformed, "/polygon/1"},
        {R"({"polygon":[[0,0],[1,"2"]]})", Code::kMalformed, "/polygon/1/1"},
@@ -89,15 +75,15 @@ TEST(SurfaceInputsTest, ErrorsSayWhere) {
        {R"({"crs":7})", Code::kMalformed, "/crs"},
        {R"({"voids":"some"})", Code::kInvalidValue, "/voids"}},
       area);
-  expect_errors({{R"({})", Code::kMalformed, ""}, {R"({"level":"1"})", Code::kMalformed, "/level"}},
-                [](const proto::Object& object) { return proto::read_volume_inputs(object, 7); });
-  expect_errors({{R"({"observer":[1,2]})", Code::kMalformed, ""},
-                 {R"({"observer":[1,2,3],"target":[1,2]})", Code::kMalformed, "/observer"},
-                 {R"({"observer":[1,2],"target":[1,2],"curvature":1})", Code::kMalformed, "/curvature"}},
-                [](const proto::Object& object) { return proto::read_sight_inputs(object); });
-  expect_errors({{R"({"levels":[1,2,3,4]})", Code::kTooLarge, "/levels"},
-                 {R"({"interval":"1"})", Code::kMalformed, "/interval"}},
-                [](const proto::Object& object) { return proto::read_contour_inputs(object, 3); });
+  expect_refused({{R"({})", Code::kMalformed, ""}, {R"({"level":"1"})", Code::kMalformed, "/level"}},
+                 [](const proto::Object& object) { return proto::read_volume_inputs(object, 7); });
+  expect_refused({{R"({"observer":[1,2]})", Code::kMalformed, ""},
+                  {R"({"observer":[1,2,3],"target":[1,2]})", Code::kMalformed, "/observer"},
+                  {R"({"observer":[1,2],"target":[1,2],"curvature":1})", Code::kMalformed, "/curvature"}},
+                 [](const proto::Object& object) { return proto::read_sight_inputs(object); });
+  expect_refused({{R"({"levels":[1,2,3,4]})", Code::kTooLarge, "/levels"},
+                  {R"({"interval":"1"})", Code::kMalformed, "/interval"}},
+                 [](const proto::Object& object) { return proto::read_contour_inputs(object, 3); });
 }
 
 TEST(SurfaceProcessesTest, TakeNoMembersThatTheyDoNotKnow) {

@@ -8,16 +8,17 @@ namespace tin::query {
 
 using exact::Point;
 
-Inside::Inside(const Ring& ring) {
-  if (ring.empty()) return;
-  min_ = max_ = ring.front();
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Point a = ring[i], b = ring[i + 1 == ring.size() ? 0 : i + 1];
-    min_ = {std::min(min_.x, a.x), std::min(min_.y, a.y)};
-    max_ = {std::max(max_.x, a.x), std::max(max_.y, a.y)};
-    if (a == b) continue;
-    sides_.push_back(a.y <= b.y ? Side{a, b} : Side{b, a});
-    tallest_ = std::max(tallest_, std::int64_t{sides_.back().high.y} - sides_.back().low.y);
+Inside::Inside(std::span<const Ring> rings) {
+  for (const Ring& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point a = ring[i], b = ring[i + 1 == ring.size() ? 0 : i + 1];
+      if (a == b) continue;
+      if (sides_.empty()) min_ = max_ = a;
+      min_ = {std::min(min_.x, a.x), std::min(min_.y, a.y)};
+      max_ = {std::max(max_.x, a.x), std::max(max_.y, a.y)};
+      sides_.push_back(a.y <= b.y ? Side{a, b} : Side{b, a});
+      tallest_ = std::max(tallest_, std::int64_t{sides_.back().high.y} - sides_.back().low.y);
+    }
   }
   std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) { return a.low.y < b.low.y; });
 }

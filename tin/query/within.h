@@ -11,12 +11,14 @@
 
 namespace tin::query {
 
-/// A polygon that may cross itself: a point is inside if it lies on a side, or if an odd number of turns
-/// encloses it.
+/// A polygon that may have holes and cross itself: a point is inside if it lies on a side, or if an odd
+/// number of turns encloses it.
 class Inside {
  public:
-  /// The last position need not repeat the first. Requires: positions on the lattice.
-  explicit Inside(const Ring& ring);
+  /// Outlines and holes in any order. The last position need not repeat the first. Requires: positions on the
+  /// lattice.
+  explicit Inside(std::span<const Ring> rings);
+  explicit Inside(const Ring& ring) : Inside(std::span(&ring, 1)) {}
 
   /// Cost: the sides that begin at most the longest one's height below the point.
   bool holds(exact::Point p) const;

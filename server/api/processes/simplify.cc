@@ -46,7 +46,7 @@ std::string results_json(const app::Simplified& done) {
   return proto::simplify_results_json(results);
 }
 
-/// Errors: kUnknownVertex, where the id stands.
+/// Errors: kUnknownVertex, where the id stands; kOutsideLattice.
 Result<app::Protection> protection_of(const app::Tin& tin, const proto::SimplifyProtect& asked) {
   app::Protection protect;
   protect.border = asked.border;
@@ -59,11 +59,16 @@ Result<app::Protection> protection_of(const app::Tin& tin, const proto::Simplify
                             "There is no vertex " + std::to_string(unknown->id.value()) + ".", unknown->where);
   }
   for (const auto& one : asked.ids) protect.ids.push_back(one.id);
+  const tin::frame::Frame frame = tin.summary().frame;
   for (const auto& polygon : asked.polygons) {
     auto& rings = protect.polygons.emplace_back();
     for (const auto& ring : polygon) {
       auto& corners = rings.emplace_back();
-      for (const proto::Position2& at : ring) corners.push_back({at.x, at.y});
+      for (const proto::Position2& at : ring) {
+        const auto corner = frame.to_lattice(at.x, at.y);
+        if (!corner) return tin::base::error(corner.error().code, corner.error().message, "/inputs/protect");
+        corners.push_back(*corner);
+      }
     }
   }
   return protect;

@@ -3,35 +3,19 @@
 #include <gtest/gtest.h>
 
 #include "proto/processes/simplify.h"
+#include "tests/proto/expect_errors.h"
 #include "tests/support/schema_check.h"
 
 namespace {
 
 using proto::ExecutionRequest;
+using tests_support::expect_errors;
 using tests_support::violations;
 using tin::base::Code;
 using tin::base::Result;
 
 void expect_clean(const std::vector<std::string>& wrong, const std::string& json) {
   for (const auto& line : wrong) ADD_FAILURE() << line << "\n" << json;
-}
-
-struct Wrong {
-  const char* body;
-  Code code;
-  const char* where;
-};
-
-template <class Read>
-void expect_errors(std::initializer_list<Wrong> cases, Read read) {
-  for (const Wrong& wrong : cases) {
-    const auto result = read(wrong.body);
-    ASSERT_FALSE(result.ok()) << wrong.body;
-    EXPECT_EQ(static_cast<int>(result.error().code), static_cast<int>(wrong.code))
-        << wrong.body << ": " << result.error().message;
-    EXPECT_EQ(result.error().where, wrong.where) << wrong.body;
-    EXPECT_FALSE(result.error().message.empty());
-  }
 }
 
 TEST(ExecutionRequestTest, TheResultStandsInADocumentOnlyIfAskedTo) {
@@ -67,7 +51,7 @@ TEST(ExecutionRequestTest, ErrorsSayWhere) {
       [](const char* body) { return ExecutionRequest::read(body); });
 }
 
-Result<proto::SimplifyInputs> read_simplify(const char* body) {
+Result<proto::SimplifyInputs> execute_simplify(const char* body) {
   const auto request = ExecutionRequest::read(body);
   if (!request) return request.error();
   return proto::read_simplify_inputs(request->inputs());
@@ -75,7 +59,7 @@ Result<proto::SimplifyInputs> read_simplify(const char* body) {
 
 TEST(SimplifyInputsTest, ReadsEveryInput) {
   const auto inputs =
-      read_simplify(
+      execute_simplify(
           R"({"inputs":{"tin":"a","tolerance":0,"maxVertices":3,"as":"b","effort":"best","maxSeconds":2.5,"seed":7,)"
           R"("elevations":"fit","keepFlat":12,"against":"surface"}})")
           .value();
@@ -89,21 +73,21 @@ TEST(SimplifyInputsTest, ReadsEveryInput) {
   EXPECT_EQ(inputs.effort, proto::SimplifyEffort::kBest);
   EXPECT_EQ(inputs.max_seconds, 2.5);
   EXPECT_EQ(inputs.seed, 7U);
-  const auto small = read_simplify(R"({"inputs":{"tin":"a","maxVertices":1000}})").value();
+  const auto small = execute_simplify(R"({"inputs":{"tin":"a","maxVertices":1000}})").value();
   EXPECT_FALSE(small.tolerance || small.as || small.max_seconds);
   EXPECT_EQ(small.effort, proto::SimplifyEffort::kBalanced);
   EXPECT_EQ(small.elevations, proto::SimplifyElevations::kSource);
   EXPECT_EQ(small.keep_flat, 0U);
   EXPECT_EQ(small.against, proto::SimplifyAgainst::kSamples);
-  EXPECT_EQ(read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":true}})")->keep_flat, 64U);
-  EXPECT_EQ(read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":false}})")->keep_flat, 0U);
+  EXPECT_EQ(execute_simplify(R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":true}})")->keep_flat, 64U);
+  EXPECT_EQ(execute_simplify(R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":false}})")->keep_flat, 0U);
 }
 
 TEST(SimplifyInputsTest, ReadsWhatStays) {
-  const auto one = read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"protect":"border"}})").value();
+  const auto one = execute_simplify(R"({"inputs":{"tin":"a","tolerance":1,"protect":"border"}})").value();
   EXPECT_TRUE(one.protect.border);
   const auto many =
-      read_simplify(
+      execute_simplify(
           R"({"inputs":{"tin":"a","tolerance":1,"protect":[7,{"type":"Polygon","coordinates":[[[0,0],[4,0],[0,4,1]],)"
           R"([[1,1],[2,1],[1,2]]]},{"type":"MultiPolygon","coordinates":[[[[9,9],[10,9],[9,10]]]]},8]}})")
           .value();
@@ -129,15 +113,20 @@ TEST(SimplifyInputsTest, ErrorsSayWhere) {
           {R"({"inputs":{"tin":"a","maxVertices":2}})", Code::kInvalidValue, "/inputs/maxVertices"},
           {R"({"inputs":{"tin":"a","maxVertices":10.5}})", Code::kMalformed, "/inputs/maxVertices"},
           {R"({"inputs":{"tin":"a","tolerance":1,"effort":"most"}})", Code::kInvalidValue, "/inputs/effort"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":0}})", Code::kInvalidValue, "/inputs/maxSeconds"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":86401}})", Code::kInvalidValue, "/inputs/maxSeconds"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"elevations":"any"}})", Code::kInvalidValue, "/inputs/elevations"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":0}})", Code::kInvalidValue,
+           "/inputs/maxSeconds"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"maxSeconds":86401}})", Code::kInvalidValue,
+           "/inputs/maxSeconds"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"elevations":"any"}})", Code::kInvalidValue,
+           "/inputs/elevations"},
           {R"({"inputs":{"tin":"a","tolerance":1,"elevations":1}})", Code::kMalformed, "/inputs/elevations"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"against":"points"}})", Code::kInvalidValue, "/inputs/against"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"against":"points"}})", Code::kInvalidValue,
+           "/inputs/against"},
           {R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":0}})", Code::kInvalidValue, "/inputs/keepFlat"},
           {R"({"inputs":{"tin":"a","tolerance":1,"keepFlat":"yes"}})", Code::kMalformed, "/inputs/keepFlat"},
           {R"({"inputs":{"tin":"a","tolerance":1,"protect":"all"}})", Code::kInvalidValue, "/inputs/protect"},
-          {R"({"inputs":{"tin":"a","tolerance":1,"protect":[1,0]}})", Code::kInvalidValue, "/inputs/protect/1"},
+          {R"({"inputs":{"tin":"a","tolerance":1,"protect":[1,0]}})", Code::kInvalidValue,
+           "/inputs/protect/1"},
           {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Point","coordinates":[1,2]}}})",
            Code::kInvalidValue, "/inputs/protect/type"},
           {R"({"inputs":{"tin":"a","tolerance":1,"protect":{"type":"Polygon","coordinates":[[[1,2],[3]]]}}})",
@@ -149,8 +138,8 @@ TEST(SimplifyInputsTest, ErrorsSayWhere) {
           {R"({"inputs":{"tin":"a","tolerance":1,"as":""}})", Code::kInvalidValue, "/inputs/as"},
           {R"({"inputs":{"tin":"a","tolerance":1,"speed":9}})", Code::kMalformed, "/inputs/speed"},
       },
-      read_simplify);
-  EXPECT_NE(read_simplify(R"({"inputs":{"tin":"a","tolerance":1,"effort":"most"}})")
+      execute_simplify);
+  EXPECT_NE(execute_simplify(R"({"inputs":{"tin":"a","tolerance":1,"effort":"most"}})")
                 .error()
                 .message.find("fast"),
             std::string::npos);

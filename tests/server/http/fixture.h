@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -81,6 +82,13 @@ inline Response streaming(std::function<bool(int, std::string&)> make) {
 
 inline Response text(std::string body) {
   return Response{200, {{"Content-Type", "text/plain"}}, std::move(body)};
+}
+
+/// A chunk of a chunked body.
+inline std::string chunk(const std::string& data) {
+  char size[20];
+  std::snprintf(size, sizeof size, "%zx\r\n", data.size());
+  return size + data + "\r\n";
 }
 
 inline std::string read_file(const std::filesystem::path& path) {

@@ -23,7 +23,7 @@ Head head_of(const std::string& raw) {
   return std::get<Head>(std::move(read));
 }
 
-struct Vector {
+struct HeadVector {
   const char* name;
   std::string fields;  // after "POST / HTTP/1.1" and a Host
   int status;
@@ -31,7 +31,7 @@ struct Vector {
 
 TEST(FramingTest, AmbiguousFieldsAreRefused) {
   using namespace std::string_literals;
-  const std::vector<Vector> vectors = {
+  const std::vector<HeadVector> vectors = {
       {"plain", "", 200},
       {"length", "Content-Length: 5\r\n", 200},
       {"chunked", "Transfer-Encoding: chunked\r\n", 200},
@@ -77,7 +77,7 @@ TEST(FramingTest, AmbiguousFieldsAreRefused) {
       {"other expectation", "Expect: magic\r\n", 417},
       {"malformed connection", "Connection: close@\r\n", 400},
   };
-  for (const Vector& v : vectors) {
+  for (const HeadVector& v : vectors) {
     EXPECT_EQ(status_of("POST / HTTP/1.1\r\nHost: t\r\n" + v.fields + "\r\n"), v.status) << v.name;
   }
 }

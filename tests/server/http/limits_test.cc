@@ -7,12 +7,6 @@ namespace {
 using std::chrono::milliseconds;
 using LimitsTest = HttpTest;
 
-std::string chunk(const std::string& data) {
-  char size[32];
-  std::snprintf(size, sizeof size, "%zx\r\n", data.size());
-  return size + data + "\r\n";
-}
-
 TEST_F(LimitsTest, ABodyAtTheLimitIsTakenAndOnePastIsNot) {
   options_.memory_body_limit = 1000;
   options_.file_body_limit = 2000;

@@ -18,12 +18,6 @@ std::string post(const std::string& fields, const std::string& body) {
   return "POST /echo HTTP/1.1\r\nHost: t\r\n" + fields + "\r\n" + body;
 }
 
-std::string chunk(const std::string& body) {
-  char size[20];
-  std::snprintf(size, sizeof size, "%zx\r\n", body.size());
-  return size + body + "\r\n";
-}
-
 struct Vector {
   const char* name;
   std::string bytes;

@@ -5,11 +5,12 @@
 
 #include "tests/support/oracle.h"
 #include "tests/support/point_sets.h"
+#include "tests/tin/delaunay/broken.h"
 #include "tin/delaunay/triangulation.h"
-#include "tin/mesh/validate.h"
 
 namespace {
 
+using support::broken;
 using support::Random;
 using support::triangles;
 using tin::delaunay::Location;
@@ -18,8 +19,6 @@ using tin::exact::Point;
 using tin::mesh::kNone;
 using tin::mesh::TriangleSlot;
 using tin::mesh::VertexSlot;
-
-std::string broken(const Triangulation& t) { return tin::mesh::validate(t.mesh()).value_or(""); }
 
 /// A triangulation with a record of which vertex stands where.
 struct Tracked {

@@ -7,19 +7,18 @@
 
 #include "tests/support/oracle.h"
 #include "tests/support/point_sets.h"
+#include "tests/tin/delaunay/broken.h"
 #include "tin/mesh/validate.h"
 
 namespace {
 
+using support::broken;
 using support::Random;
 using support::triangles;
 using tin::delaunay::Location;
 using tin::delaunay::Triangulation;
 using tin::exact::Point;
 using tin::mesh::VertexSlot;
-
-/// "" when the mesh is valid, else what is broken.
-std::string broken(const Triangulation& t) { return tin::mesh::validate(t.mesh()).value_or(""); }
 
 class TriangulationTest : public testing::Test {
  protected:

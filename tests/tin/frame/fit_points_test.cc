@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/tin/frame/scales.h"
 #include "tin/frame/frame.h"
 
 namespace tin::frame {
@@ -9,9 +10,7 @@ namespace {
 
 using base::Code;
 
-constexpr GroundScale kMetres{false, 1};
 constexpr GroundScale kFeet{false, 0.3048};
-constexpr GroundScale kDegrees{true, 1};
 
 void expect_holds(const Frame& frame, const Extent& e) {
   const double half = exact::kLatticeHalf / 2.0;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "tests/tin/frame/scales.h"
 #include "tin/frame/frame.h"
 
 namespace tin::frame {
@@ -10,9 +11,7 @@ namespace {
 
 using base::Code;
 
-constexpr GroundScale kMetres{false, 1};
 constexpr GroundScale kSurveyFeet{false, 1200.0 / 3937};
-constexpr GroundScale kDegrees{true, 1};
 
 /// Every pixel centre (or a sample of rows and columns of large rasters), computed as its file gives it,
 /// snaps to the lattice point that column and row give, both ways.

@@ -52,6 +52,15 @@ TEST(InsideTest, DegenerateRingsHoldTheirSidesOnly) {
   EXPECT_FALSE(Inside({{3, 3}, {3, 3}, {3, 3}}).holds({4, 3}));
 }
 
+TEST(InsideTest, AHoleIsOutsideAndItsSidesAreInside) {
+  const std::vector<Ring> rings{{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {}, {{4, 4}, {4, 6}, {6, 6}, {6, 4}}};
+  const Inside holed(rings);
+  for (const Point p : {Point{0, 0}, Point{1, 5}, Point{9, 5}, Point{4, 5}, Point{6, 6}, Point{5, 4}})
+    EXPECT_TRUE(holed.holds(p)) << p.x << " " << p.y;
+  EXPECT_FALSE(holed.holds({5, 5}));
+  EXPECT_FALSE(holed.holds({11, 5}));
+}
+
 TEST(InsideTest, AgreesWithTheFanOfAnyRingThatMayCrossItself) {
   const std::uint64_t seed = support::seed();
   std::mt19937_64 random(seed);

@@ -17,14 +17,14 @@ using tin::simplify::WholeHeights;
 using tin::simplify::WholePlane;
 using tin::simplify::WorstCell;
 
-constexpr std::int32_t kWidth = 83, kHeight = 90;
+constexpr std::int32_t kColumns = 83, kRows = 90;
 
 class WholeScanTest : public testing::Test {
  protected:
-  WholeScanTest() : cells_(kWidth * kHeight + WholeHeights::kRoom, WholeHeights::kVoid) {}
+  WholeScanTest() : cells_(kColumns * kRows + WholeHeights::kRoom, WholeHeights::kVoid) {}
 
   void fill(std::int32_t largest, unsigned voids_in_a_hundred) {
-    for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
+    for (std::size_t i = 0; i < kColumns * kRows; ++i) {
       cells_[i] = random_() % 100 < voids_in_a_hundred ? WholeHeights::kVoid : height(largest);
     }
   }
@@ -36,9 +36,9 @@ class WholeScanTest : public testing::Test {
       const std::int32_t from = static_cast<std::int32_t>(random_() % static_cast<unsigned>(size));
       return std::min(size - 1, from % std::max(1, reach) + (size - reach) / 3);
     };
-    return {at(kWidth), at(kHeight)};
+    return {at(kColumns), at(kRows)};
   }
-  WholeHeights heights() const { return {cells_.data(), kWidth}; }
+  WholeHeights heights() const { return {cells_.data(), kColumns}; }
 
   /// Over the triangle of these corners and heights.
   static WholePlane plane(GridPoint a, GridPoint b, GridPoint c, std::int64_t za, std::int64_t zb,
@@ -56,15 +56,15 @@ class WholeScanTest : public testing::Test {
     };
     const std::int64_t sign = turn(p.a, p.b, p.c.x, p.c.y) < 0 ? -1 : 1;
     WorstCell worst;
-    for (std::int32_t y = 0; y < kHeight; ++y) {
-      for (std::int32_t x = 0; x < kWidth; ++x) {
-        const std::int32_t z = cells_[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)];
+    for (std::int32_t y = 0; y < kRows; ++y) {
+      for (std::int32_t x = 0; x < kColumns; ++x) {
+        const std::int32_t z = cells_[static_cast<std::size_t>(y) * kColumns + static_cast<std::size_t>(x)];
         if (z == WholeHeights::kVoid || sign * turn(p.a, p.b, x, y) < 0 || sign * turn(p.b, p.c, x, y) < 0 ||
             sign * turn(p.c, p.a, x, y) < 0)
           continue;
         const std::int64_t distance =
             std::abs(p.base + (x - p.a.x) * p.slope_x + (y - p.a.y) * p.slope_y - p.area * z);
-        if (distance > worst.distance) worst = {distance, static_cast<std::uint32_t>(y * kWidth + x)};
+        if (distance > worst.distance) worst = {distance, static_cast<std::uint32_t>(y * kColumns + x)};
       }
     }
     return worst;
