@@ -225,13 +225,13 @@ bool WholeGridSamples::can_hold(const terrain::SourceGrid& grid, int shift, doub
 }
 
 WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
-                                   std::vector<Facet::Corner> others, const base::Progress* progress)
-    : GridSamples(grid, std::move(others), progress),
+                                   std::vector<Facet::Corner> others, const GridKeeping& keeping)
+    : GridSamples(grid, std::move(others), keeping.progress),
       shift_(shift),
       scale_(std::ldexp(1.0, shift)),
       largest_(std::ldexp(largest, shift)),
       any_height_(any_height),
-      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid) {}
+      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid, keeping.memory) {}
 
 Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                   Depth depth) const {
@@ -276,9 +276,9 @@ double WholeGridSamples::height_or_nan(SampleIndex cell) const {
 // -------------------------------------------------------------------------------------------------
 
 RealGridSamples::RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
-                                 const base::Progress* progress)
-    : GridSamples(grid, std::move(others), progress),
-      heights_(cell_count(), std::numeric_limits<double>::quiet_NaN()) {}
+                                 const GridKeeping& keeping)
+    : GridSamples(grid, std::move(others), keeping.progress),
+      heights_(cell_count(), std::numeric_limits<double>::quiet_NaN(), keeping.memory) {}
 
 Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                  Depth depth) const {

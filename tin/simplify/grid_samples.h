@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,12 @@ namespace tin::simplify {
 struct CellSample {
   std::int32_t column, row;
   double z;
+};
+
+/// Where a raster's heights lie, and who may put an end to looking at them (null: nobody).
+struct GridKeeping {
+  std::pmr::memory_resource* memory;
+  const base::Progress* progress;
 };
 
 /// What the two kinds of rasters share. Indices: row by row, then the samples off the raster.
@@ -83,7 +90,7 @@ class WholeGridSamples final : public GridSamples {
 
   /// Requires: can_hold().
   WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
-                   std::vector<Facet::Corner> others, const base::Progress* progress);
+                   std::vector<Facet::Corner> others, const GridKeeping& keeping);
   void put(const CellSample& sample) {
     heights_[index(sample.column, sample.row)] = static_cast<std::int32_t>(whole(sample.z));
   }
@@ -102,7 +109,7 @@ class WholeGridSamples final : public GridSamples {
   int shift_;
   double scale_, largest_;  // 2^shift; the largest absolute height of a sample or corner, times that
   bool any_height_;         // corners need not be samples
-  std::vector<std::int32_t> heights_;
+  std::pmr::vector<std::int32_t> heights_;
 };
 
 /// Any heights: scans take doubles, and doubtful cells are judged exactly.
@@ -114,7 +121,7 @@ class RealGridSamples final : public GridSamples {
 
   /// Requires: can_hold().
   RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
-                  const base::Progress* progress);
+                  const GridKeeping& keeping);
   void put(const CellSample& sample) { heights_[index(sample.column, sample.row)] = sample.z; }
 
  private:
@@ -125,7 +132,7 @@ class RealGridSamples final : public GridSamples {
   Scan judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const;
   double height_or_nan(SampleIndex cell) const override;
 
-  std::vector<double> heights_;  // NaN: no sample
+  std::pmr::vector<double> heights_;  // NaN: no sample
 };
 
 }  // namespace tin::simplify

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <variant>
@@ -24,9 +25,11 @@ namespace tin::terrain {
 /// rank among the points, sorted by position.
 class SourceSamples {
  public:
-  /// Heights in the narrowest form that keeps each of them bit for bit. Integers are multiples of 2^-shift.
+  /// Heights in the narrowest form that keeps each of them bit for bit, in memory of the maker's choice, which must outlive them.
+  /// Integers are multiples of 2^-shift.
   struct Heights {
-    std::variant<std::vector<std::int16_t>, std::vector<std::int32_t>, std::vector<float>, std::vector<double>> stored;
+    std::variant<std::pmr::vector<std::int16_t>, std::pmr::vector<std::int32_t>, std::pmr::vector<float>, std::pmr::vector<double>>
+        stored;
     int shift = 0;
 
     double at(std::size_t i) const;
