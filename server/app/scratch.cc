@@ -37,7 +37,8 @@ class NamelessFile {
 
   int number() const { return number_; }
   [[noreturn]] void fail(int reason) const {
-    throw NoScratch("no room for a temporary file in " + folder_.string() + ": " + std::generic_category().message(reason));
+    throw NoScratch("no room for a temporary file in " + folder_.string() + ": " +
+                    std::generic_category().message(reason));
   }
 
  private:
@@ -89,7 +90,8 @@ void* ScratchMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
   const std::lock_guard lock(mutex_);
   maps_.emplace(memory, bytes);
   if (watcher_.joinable()) return memory;
-  watcher_ = std::jthread([this, before = resident_of_files()](const std::stop_token& stop) { keep_watch(stop, before); });
+  watcher_ = std::jthread(
+      [this, before = resident_of_files()](const std::stop_token& stop) { keep_watch(stop, before); });
   return memory;
 }
 
@@ -124,7 +126,8 @@ void ScratchMemory::keep_watch(const std::stop_token& stop, std::uint64_t reside
   }
 }
 
-/// Pages of a shared mapping that go from the process are the file's all the same, also what was written to them.
+/// Pages of a shared mapping that go from the process are the file's all the same, also what was written to
+/// them.
 void ScratchMemory::let_go() {
   const std::lock_guard lock(mutex_);
   for (const auto& [memory, bytes] : maps_) ::madvise(memory, bytes, MADV_DONTNEED);

@@ -1,7 +1,8 @@
-// Memory for arrays as large as a raster: what goes past a limit lies in files, of which a part only is in memory at a time.
+// Memory for arrays as large as a raster: what goes past a limit lies in files, of which a part only is in
+// memory at a time.
 //
 //   ScratchMemory scratch({.bytes = 1 << 30, .folder = "/data"});
-//   std::pmr::vector<std::int16_t> heights(&scratch);
+//   tin::base::Array<std::int16_t> heights(count, &scratch);
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@ namespace server::app {
 
 struct ScratchLimits {
   std::uint64_t bytes = std::uint64_t{1} << 30;  // held in memory at a time, about
-  std::filesystem::path folder;                  // of the files, which have no names; on a disk, not in memory
+  std::filesystem::path folder;  // of the files, which have no names; on a disk, not in memory
 };
 
 /// No room, in memory or on the disk: says which.
@@ -31,10 +32,11 @@ class NoScratch : public std::bad_alloc {
   std::string what_;
 };
 
-/// Half of the limit is for arrays that are in memory as a whole, given to those who ask first. All others are mapped files; while
-/// there are any, a thread looks every few milliseconds how much of them is resident, and lets go of all pages once that is the
-/// other half. (Contents stay: the system's page cache has them while there is room, and the disk after that.) The room on the
-/// disk is taken at once, so a full disk is found out when memory is asked for.
+/// Half of the limit is for arrays that are in memory as a whole, given to those who ask first. All others
+/// are mapped files; while there are any, a thread looks every few milliseconds how much of them is resident,
+/// and lets go of all pages once that is the other half. (Contents stay: the system's page cache has them
+/// while there is room, and the disk after that.) The room on the disk is taken at once, so a full disk is
+/// found out when memory is asked for.
 ///
 /// allocate() throws NoScratch. Threads: any number at once.
 class ScratchMemory final : public std::pmr::memory_resource {

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <new>
 #include <utility>
 
 #include "proto/json_write.h"
@@ -113,6 +115,8 @@ int simplify(const SimplifyArguments& arguments) {
     if (*made) written = write_output((*made)->terrain, arguments.output, progress);
   } catch (const app::NoScratch& none) {
     return fail(arguments.input, error(Code::kStorage, none.what()));
+  } catch (const std::bad_alloc&) {
+    return fail(arguments.input, error(Code::kTooLarge, "there is not enough memory"));
   }
   if (const int signal = CancelOnSignal::signal(); signal != 0) return 128 + signal;
   if (!*made) return fail(arguments.input, made->error());

@@ -17,6 +17,8 @@ using exact::Point;
 
 namespace {
 
+constexpr std::int32_t kTallRows = 64;  // of a triangle: then whole squares of its cells may be passed over
+
 GridPoint cell_of(const Site& site) {
   return {site.column, site.row};
 }
@@ -231,7 +233,8 @@ WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, d
       scale_(std::ldexp(1.0, shift)),
       largest_(std::ldexp(largest, shift)),
       any_height_(any_height),
-      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid, keeping.memory) {}
+      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid, keeping.memory),
+      blocks_(grid.width, grid.height) {}
 
 Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                   Depth depth) const {
@@ -250,8 +253,12 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
   const WholePlane plane{cell_of(a), cell_of(b), cell_of(c), area, area * base, slope_x, slope_y};
   const std::int64_t stop = to_end ? INT64_MAX : static_cast<std::int64_t>(surely_over);
   const WholeHeights heights{heights_.data(), grid().width};
-  const WorstCell worst =
-      doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);
+  const auto scan_all = [&] {
+    const auto [low, high] = std::minmax({a.row, b.row, c.row});
+    if (high - low >= kTallRows) return scan_by_blocks(heights, blocks_, plane, stop);
+    return doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);
+  };
+  const WorstCell worst = scan_all();
   const auto distance = static_cast<double>(worst.distance);
   // Rounding is far from the limit for nearly all; else the whole numbers decide.
   const bool doubtful = std::abs(distance - limit) <= 0x1p-48 * limit;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "tin/base/array.h"
+#include "tin/simplify/block_scan.h"
 #include "tin/simplify/point_samples.h"
 #include "tin/simplify/samples.h"
 #include "tin/terrain/source_grid.h"
@@ -92,7 +94,9 @@ class WholeGridSamples final : public GridSamples {
   WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
                    std::vector<Facet::Corner> others, const GridKeeping& keeping);
   void put(const CellSample& sample) {
-    heights_[index(sample.column, sample.row)] = static_cast<std::int32_t>(whole(sample.z));
+    const auto z = static_cast<std::int32_t>(whole(sample.z));
+    heights_[index(sample.column, sample.row)] = z;
+    blocks_.put(sample.column, sample.row, z);
   }
   double fineness() const override { return 1 / scale_; }
   double most() const override { return largest_ / scale_; }
@@ -109,7 +113,8 @@ class WholeGridSamples final : public GridSamples {
   int shift_;
   double scale_, largest_;  // 2^shift; the largest absolute height of a sample or corner, times that
   bool any_height_;         // corners need not be samples
-  std::pmr::vector<std::int32_t> heights_;
+  base::Array<std::int32_t> heights_;
+  Blocks blocks_;
 };
 
 /// Any heights: scans take doubles, and doubtful cells are judged exactly.
@@ -132,7 +137,7 @@ class RealGridSamples final : public GridSamples {
   Scan judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const;
   double height_or_nan(SampleIndex cell) const override;
 
-  std::pmr::vector<double> heights_;  // NaN: no sample
+  base::Array<double> heights_;  // NaN: no sample
 };
 
 }  // namespace tin::simplify

@@ -16,7 +16,8 @@ namespace tin::terrain {
 /// O(1) each. Memory: the present form, and for a moment the next one beside it.
 class HeightsBuilder {
  public:
-  explicit HeightsBuilder(std::size_t expected, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  explicit HeightsBuilder(std::size_t expected,
+                          std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   /// Requires: finite.
   void add(double z);

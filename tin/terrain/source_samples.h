@@ -9,12 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <memory_resource>
 #include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
+#include "tin/base/array.h"
 #include "tin/exact/point.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/source_grid.h"
@@ -28,7 +28,7 @@ class SourceSamples {
   /// Heights in the narrowest form that keeps each of them bit for bit, in memory of the maker's choice, which must outlive them.
   /// Integers are multiples of 2^-shift.
   struct Heights {
-    std::variant<std::pmr::vector<std::int16_t>, std::pmr::vector<std::int32_t>, std::pmr::vector<float>, std::pmr::vector<double>>
+    std::variant<base::Array<std::int16_t>, base::Array<std::int32_t>, base::Array<float>, base::Array<double>>
         stored;
     int shift = 0;
 
