@@ -65,7 +65,9 @@ TEST_F(ScaleTest, WhatWaitsInFilesGivesTheSameTin) {
       const std::string whole = simplified(input, {"--effort", effort, "--threads", "2"});
       EXPECT_EQ(simplified(input, {"--effort", effort, "--threads", "2", "--memory", "1"}), whole) << effort;
       EXPECT_EQ(simplified(input, {"--effort", effort, "--threads", "1", "--memory", "1"}), whole) << effort;
-      if (std::string(effort) == "balanced") EXPECT_EQ(whole, expected);
+      if (std::string(effort) == "balanced") {
+        EXPECT_EQ(whole, expected);
+      }
     }
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()), 1)
         << "something is left";
