@@ -70,6 +70,13 @@ CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
   command->add_option("--seed", arguments.seed, "Chooses the way of the search")->capture_default_str();
   command->add_option("--threads", arguments.threads, "How many threads work; 0: as the processor has")
       ->capture_default_str();
+  command
+      ->add_option("--memory", arguments.memory,
+                   "Megabytes of a raster's samples to hold at a time; what is more waits in temporary files")
+      ->check(CLI::Range(1, 1 << 24))
+      ->capture_default_str();
+  command->add_option("--scratch", arguments.scratch,
+                      "Folder of temporary files, on a disk; the output's unless given");
   command->add_option("--crs", arguments.crs, "CRS of the file, in place of what it says: EPSG:n or WKT");
   command->add_option("--format", arguments.format, "Format of the file, where its content leaves it open");
   command->add_flag("--json", arguments.json, "Print the report as JSON");

@@ -3,12 +3,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <new>
 #include <utility>
 
 #include "proto/json_write.h"
 #include "proto/processes/simplify.h"
 #include "server/api/processes/simplify.h"
 #include "server/app/import.h"
+#include "server/app/scratch.h"
 #include "server/app/simplify.h"
 #include "server/app/threads.h"
 #include "server/cli/output_file.h"
@@ -23,6 +26,7 @@ using tin::base::Result;
 
 namespace {
 
+namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kToleranceNotMet = 3;
@@ -87,21 +91,32 @@ void print_text(const SimplifyArguments& arguments, const proto::SimplifyResults
   std::printf("; RMSE %.6g%s; %.2f s\n", results.rmse, of.c_str(), results.seconds);
 }
 
+fs::path folder_of(const fs::path& file) {
+  return file.parent_path().empty() ? "." : file.parent_path();
+}
+
 }  // namespace
 
 int simplify(const SimplifyArguments& arguments) {
   const auto start = Clock::now();
-  const auto request = request_of(arguments);
+  auto request = request_of(arguments);
   if (!request) return fail("", request.error());
   if (auto fine = check_output(arguments.output); !fine) return fail(arguments.output, fine.error());
+  app::ScratchMemory scratch({arguments.memory << 20, arguments.scratch.empty() ? folder_of(arguments.output)
+                                                                                : fs::path(arguments.scratch)});
+  request->options.memory = request->simplify->memory = &scratch;
   tin::base::Progress progress;
   const CancelOnSignal cancelling(progress);
   Result<void> written;
   std::optional<Result<app::ImportedTerrain>> made;
-  {
+  try {
     const ProgressBar bar(progress, !arguments.quiet);
     made.emplace(app::import_terrain(arguments.input, *request, progress));
     if (*made) written = write_output((*made)->terrain, arguments.output, progress);
+  } catch (const app::NoScratch& none) {
+    return fail(arguments.input, error(Code::kStorage, none.what()));
+  } catch (const std::bad_alloc&) {
+    return fail(arguments.input, error(Code::kTooLarge, "there is not enough memory"));
   }
   if (const int signal = CancelOnSignal::signal(); signal != 0) return 128 + signal;
   if (!*made) return fail(arguments.input, made->error());

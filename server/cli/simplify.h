@@ -19,7 +19,9 @@ struct SimplifyArguments {
   std::string against = "samples";
   std::uint64_t keep_flat = 0;  // samples of a plateau; 0: plateaus may be tilted
   std::uint64_t seed = 1;
-  unsigned threads = 0;  // 0: the processor's
+  unsigned threads = 0;        // 0: the processor's
+  std::uint64_t memory = 1024;  // megabytes of a raster's samples that are held at a time
+  std::string scratch;          // folder of temporary files; empty: the output's
   std::string crs;       // in place of the file's
   std::string format;    // of the input; empty: by its content
   bool json = false;     // the report as JSON

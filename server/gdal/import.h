@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <memory_resource>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct ImportOptions {
   std::uint64_t max_unpacked_bytes = std::uint64_t{8} << 30;  // of a ZIP archive
   /// Of a raster no placements, which take 16 bytes each, but its heights only.
   bool heights_only = false;
+  /// Where a raster's heights go.
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
 };
 
 /// What a file holds, on a lattice that fits it.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "tin/exact/point.h"
@@ -98,7 +100,7 @@ bool send_frame(char kind, std::string_view body, const Sink& sink) {
 
 /// Sends an array in as many frames as it takes.
 template <class T>
-bool send_array(char kind, const std::vector<T>& items, const Sink& sink) {
+bool send_array(char kind, std::span<const T> items, const Sink& sink) {
   const std::size_t at_once = kMostFrameBytes / sizeof(T);
   for (std::size_t i = 0; i < items.size(); i += at_once) {
     const std::size_t count = std::min(at_once, items.size() - i);
@@ -112,7 +114,8 @@ bool send_array(char kind, const std::vector<T>& items, const Sink& sink) {
 template <class Options, class Visit>
 void visit_options(Options& options, Visit visit) {
   auto& [file_name, content_type, format, crs, resolution_x, resolution_y, layer, z_field, classes, max_samples,
-         max_pixels, max_unpacked_bytes, heights_only] = options;
+         max_pixels, max_unpacked_bytes, heights_only, memory] = options;
+  static_cast<void>(memory);  // each end has its own
   visit(file_name), visit(content_type), visit(format), visit(crs);
   visit(resolution_x), visit(resolution_y), visit(layer), visit(z_field);
   visit(classes), visit(max_samples), visit(max_pixels), visit(max_unpacked_bytes), visit(heights_only);
@@ -163,21 +166,21 @@ bool sound(const SourceGrid& grid, std::uint64_t max_pixels) {
 }
 
 /// Makes the array of that kind, empty. False if there is no such kind or the shift is out of all reason.
-bool choose_kind(tin::terrain::SourceSamples::Heights& heights, char kind) {
+bool choose_kind(tin::terrain::SourceSamples::Heights& heights, char kind, std::pmr::memory_resource* memory) {
   constexpr int kMostShift = 60;
   if (heights.shift < -kMostShift || heights.shift > kMostShift) return false;
   switch (kind) {
     case 0:
-      heights.stored.emplace<0>();
+      heights.stored.emplace<0>(memory);
       return true;
     case 1:
-      heights.stored.emplace<1>();
+      heights.stored.emplace<1>(memory);
       return true;
     case 2:
-      heights.stored.emplace<2>();
+      heights.stored.emplace<2>(memory);
       return true;
     case 3:
-      heights.stored.emplace<3>();
+      heights.stored.emplace<3>(memory);
       return true;
     default:
       return false;
@@ -235,9 +238,9 @@ bool send_import(const Import& import, const Sink& sink) {
     visit_grid(*grid, nodata, has_nodata, put);
     out.put(std::uint64_t{grid->valid.size()});
   }
-  return send_frame(kHead, out.take(), sink) && send_array(kPlacements, placements, sink) &&
-         (!grid || send_array(kMask, grid->valid, sink)) &&
-         std::visit([&](const auto& numbers) { return send_array(kHeights, numbers, sink); },
+  return send_frame(kHead, out.take(), sink) && send_array(kPlacements, std::span(placements), sink) &&
+         (!grid || send_array(kMask, std::span(std::as_const(grid->valid)), sink)) &&
+         std::visit([&](const auto& numbers) { return send_array(kHeights, std::span(numbers), sink); },
                     heights.stored) &&
          send_frame(kEnd, {}, sink);
 }
@@ -251,7 +254,10 @@ bool send_error(const tin::base::Error& problem, const Sink& sink) {
 }
 
 ImportReceiver::ImportReceiver(const ImportOptions& limits, Progress* progress)
-    : max_samples_(limits.max_samples), max_pixels_(limits.max_pixels), progress_(progress) {}
+    : max_samples_(limits.max_samples),
+      max_pixels_(limits.max_pixels),
+      memory_(limits.memory),
+      progress_(progress) {}
 
 ImportReceiver::~ImportReceiver() = default;
 
@@ -305,7 +311,7 @@ Result<void> ImportReceiver::take_head(std::string_view body) {
   in.get(kind_of_heights);
   in.get(import.heights.shift);
   in.get(heights_);
-  if (!in.good() || !choose_kind(import.heights, kind_of_heights)) return nonsense();
+  if (!in.good() || !choose_kind(import.heights, kind_of_heights, memory_)) return nonsense();
   char has_grid = 0;
   in.get(has_grid);
   if (has_grid != 0) {
@@ -325,6 +331,7 @@ Result<void> ImportReceiver::take_head(std::string_view body) {
   if (!in.done() || !sound(import.frame) || placements_ > max_samples_) return nonsense();
   if (heights_ != 0 && !import.grid) return nonsense();
   import.placements.reserve(placements_);
+  std::visit([this](auto& numbers) { numbers.reserve(heights_); }, import.heights.stored);
   import_ = std::move(import);
   return {};
 }

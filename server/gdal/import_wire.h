@@ -50,6 +50,7 @@ class ImportReceiver {
   tin::base::Result<void> conclude();
 
   const std::uint64_t max_samples_, max_pixels_;
+  std::pmr::memory_resource* const memory_;  // of heights
   tin::base::Progress* const progress_;
   std::string pending_;           // a frame that is not whole yet
   std::optional<Import> import_;  // since its head came

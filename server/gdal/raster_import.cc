@@ -212,7 +212,7 @@ std::optional<Error> read_samples(const ImportTask& task, GDALRasterBand& band, 
   const auto width = static_cast<std::size_t>(grid.width);
   const std::size_t pixels = width * static_cast<std::size_t>(grid.height);
   grid.valid.assign((pixels + 63) / 64, 0);
-  tin::terrain::HeightsBuilder heights(pixels);
+  tin::terrain::HeightsBuilder heights(pixels, task.options.memory);
   std::size_t count = 0;
   int block_x = 0, block_y = 0;
   band.GetBlockSize(&block_x, &block_y);

@@ -11,6 +11,7 @@ namespace bench {
 int run_paper(std::span<const std::string> arguments);
 int run_star(std::span<const std::string> arguments);
 int run_simplify(std::span<const std::string> arguments);
+int run_scale(std::span<const std::string> arguments);
 int run_raster(std::span<const std::string> arguments);
 int run_surface(std::span<const std::string> arguments);
 int run_snapshot(std::span<const std::string> arguments);

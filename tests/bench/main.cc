@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
       {"paper", bench::run_paper},       {"star", bench::run_star},     {"build", bench::run_build},
       {"insert", bench::run_insert},     {"locate", bench::run_locate}, {"remove", bench::run_remove},
       {"simplify", bench::run_simplify}, {"raster", bench::run_raster}, {"surface", bench::run_surface},
-      {"snapshot", bench::run_snapshot},
+      {"snapshot", bench::run_snapshot}, {"scale", bench::run_scale},
   };
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {

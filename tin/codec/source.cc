@@ -56,7 +56,7 @@ std::optional<T> of_rank(std::int64_t rank) {
 template <class T>
 class Forecast {
  public:
-  Forecast(const std::vector<T>& values, const SourceGrid* grid) : values_(values), grid_(grid) {}
+  Forecast(const base::Array<T>& values, const SourceGrid* grid) : values_(values), grid_(grid) {}
 
   std::int64_t operator()(std::size_t i) const {
     if (grid_ == nullptr) return i == 0 ? 0 : rank_of(values_[i - 1]);
@@ -75,7 +75,7 @@ class Forecast {
     return grid_->valid.empty() || ((grid_->valid[i / 64] >> (i % 64)) & 1U) != 0;
   }
 
-  const std::vector<T>& values_;
+  const base::Array<T>& values_;
   const SourceGrid* grid_;
   std::int64_t last_ = 0;
 };
@@ -85,7 +85,7 @@ bool is_sample(const SourceGrid* grid, std::size_t i) {
 }
 
 template <class T>
-void write_heights(Writer& out, const std::vector<T>& values, const SourceGrid* grid) {
+void write_heights(Writer& out, const base::Array<T>& values, const SourceGrid* grid) {
   Forecast forecast(values, grid);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!is_sample(grid, i)) continue;
@@ -100,8 +100,8 @@ void write_heights(Writer& out, const std::vector<T>& values, const SourceGrid* 
 }
 
 template <class T>
-std::vector<T> read_heights(Reader& in, std::size_t count, const SourceGrid* grid) {
-  std::vector<T> values(count);
+base::Array<T> read_heights(Reader& in, std::size_t count, const SourceGrid* grid) {
+  base::Array<T> values(count);
   Forecast forecast(values, grid);
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
     if (!is_sample(grid, i)) continue;

@@ -16,6 +16,8 @@ using mesh::VertexSlot;
 namespace {
 
 constexpr std::size_t kSamplesPerTile = std::size_t{1} << 16;
+/// Tiles that are worked on as one in the next round, when there are many.
+constexpr std::size_t kTilesTogether = 8, kFewPatches = 8;
 
 /// Each sample once, fixed if it is in any place.
 void unite(std::vector<Pin>& pins) {
@@ -99,19 +101,34 @@ std::vector<bool> find_seams(Patch& tin, const Tiling& tiling) {
   return on_seam;
 }
 
+bool repair_patches(std::unique_ptr<Patch>& tin, std::size_t patches, double tolerance, unsigned threads,
+                    const Phase& phase) {
+  const Tiling tiling = Tiling::of_about(tin->samples().extent(), patches, 0.5, 0.5);
+  return work_in_patches(tin, tiling, threads, phase, [&](Patch& patch, std::size_t) {
+    Greedy(patch, tolerance).run(Greedy::kNoBudget, phase.silent());
+    Decimation(patch, tolerance).run(phase.silent());
+  });
+}
+
+/// Where there are many tiles, most of what is to be done at their seams is done in larger ones that lie
+/// elsewhere, then in still larger ones: by all threads, and near by, so that little of a large raster is needed
+/// at a time. False when cancelled.
+bool join_tiles(std::unique_ptr<Patch>& tin, std::size_t tiles, double tolerance, unsigned threads,
+                const Phase& phase) {
+  double from = 0;
+  for (std::size_t patches = tiles / kTilesTogether; patches >= kFewPatches; patches /= kTilesTogether) {
+    const double to = from + (1 - from) / 2;
+    if (!repair_patches(tin, patches, tolerance, threads, phase.part(from, to))) return false;
+    from = to;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool repair(std::unique_ptr<Patch>& tin, double tolerance, unsigned threads, const Phase& phase) {
   const std::size_t patches = patch_count(tin->mesh().vertex_count());
-  if (patches > 1) {
-    const Tiling tiling = Tiling::of_about(tin->samples().extent(), patches, 0.5, 0.5);
-    const Phase part = phase.part(0, 0.8);
-    const bool finished = work_in_patches(tin, tiling, threads, part, [&](Patch& patch, std::size_t) {
-      Greedy(patch, tolerance).run(Greedy::kNoBudget, part.silent());
-      Decimation(patch, tolerance).run(part.silent());
-    });
-    if (!finished) return false;
-  }
+  if (patches > 1 && !repair_patches(tin, patches, tolerance, threads, phase.part(0, 0.8))) return false;
   const Phase rest = phase.part(patches > 1 ? 0.8 : 0, 1);
   const bool finished = Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5)) != Greedy::End::kCancelled &&
                         Decimation(*tin, tolerance).run(rest.part(0.5, 1));
@@ -131,9 +148,12 @@ std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const S
   std::vector<Pin>().swap(pins);
   const auto on_seam = find_seams(*tin, tiling);
   // An edge of the samples' surface may have called for a sample beyond the tile, so nothing is known of any triangle.
-  const bool all = samples.has_surface();
+  // Nor is it after rounds in which others were made.
+  const bool in_rounds = tiling.size() / kTilesTogether >= kFewPatches;
+  const bool all = samples.has_surface() || in_rounds;
+  if (!join_tiles(tin, tiling.size(), tolerance, threads, phase.part(0.8, 0.9))) return nullptr;
   const auto suspect = [&on_seam, all](TriangleSlot t) { return all || on_seam[t.value()]; };
-  const Phase rest = phase.part(0.8, 1);
+  const Phase rest = phase.part(in_rounds ? 0.9 : 0.8, 1);
   if (Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5), suspect) == Greedy::End::kCancelled) return nullptr;
   if (!Decimation(*tin, tolerance).run(rest.part(0.5, 1))) return nullptr;
   return tin;

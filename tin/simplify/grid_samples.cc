@@ -17,6 +17,8 @@ using exact::Point;
 
 namespace {
 
+constexpr std::int32_t kTallRows = 64;  // of a triangle: then whole squares of its cells may be passed over
+
 GridPoint cell_of(const Site& site) {
   return {site.column, site.row};
 }
@@ -225,13 +227,14 @@ bool WholeGridSamples::can_hold(const terrain::SourceGrid& grid, int shift, doub
 }
 
 WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
-                                   std::vector<Facet::Corner> others, const base::Progress* progress)
-    : GridSamples(grid, std::move(others), progress),
+                                   std::vector<Facet::Corner> others, const GridKeeping& keeping)
+    : GridSamples(grid, std::move(others), keeping.progress),
       shift_(shift),
       scale_(std::ldexp(1.0, shift)),
       largest_(std::ldexp(largest, shift)),
       any_height_(any_height),
-      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid) {}
+      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid, keeping.memory),
+      blocks_(grid.width, grid.height) {}
 
 Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                   Depth depth) const {
@@ -250,8 +253,12 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
   const WholePlane plane{cell_of(a), cell_of(b), cell_of(c), area, area * base, slope_x, slope_y};
   const std::int64_t stop = to_end ? INT64_MAX : static_cast<std::int64_t>(surely_over);
   const WholeHeights heights{heights_.data(), grid().width};
-  const WorstCell worst =
-      doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);
+  const auto scan_all = [&] {
+    const auto [low, high] = std::minmax({a.row, b.row, c.row});
+    if (high - low >= kTallRows) return scan_by_blocks(heights, blocks_, plane, stop);
+    return doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);
+  };
+  const WorstCell worst = scan_all();
   const auto distance = static_cast<double>(worst.distance);
   // Rounding is far from the limit for nearly all; else the whole numbers decide.
   const bool doubtful = std::abs(distance - limit) <= 0x1p-48 * limit;
@@ -276,9 +283,9 @@ double WholeGridSamples::height_or_nan(SampleIndex cell) const {
 // -------------------------------------------------------------------------------------------------
 
 RealGridSamples::RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
-                                 const base::Progress* progress)
-    : GridSamples(grid, std::move(others), progress),
-      heights_(cell_count(), std::numeric_limits<double>::quiet_NaN()) {}
+                                 const GridKeeping& keeping)
+    : GridSamples(grid, std::move(others), keeping.progress),
+      heights_(cell_count(), std::numeric_limits<double>::quiet_NaN(), keeping.memory) {}
 
 Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                  Depth depth) const {

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <vector>
 
+#include "tin/base/array.h"
+#include "tin/simplify/block_scan.h"
 #include "tin/simplify/point_samples.h"
 #include "tin/simplify/samples.h"
 #include "tin/terrain/source_grid.h"
@@ -16,6 +19,12 @@ namespace tin::simplify {
 struct CellSample {
   std::int32_t column, row;
   double z;
+};
+
+/// Where a raster's heights lie, and who may put an end to looking at them (null: nobody).
+struct GridKeeping {
+  std::pmr::memory_resource* memory;
+  const base::Progress* progress;
 };
 
 /// What the two kinds of rasters share. Indices: row by row, then the samples off the raster.
@@ -83,9 +92,11 @@ class WholeGridSamples final : public GridSamples {
 
   /// Requires: can_hold().
   WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
-                   std::vector<Facet::Corner> others, const base::Progress* progress);
+                   std::vector<Facet::Corner> others, const GridKeeping& keeping);
   void put(const CellSample& sample) {
-    heights_[index(sample.column, sample.row)] = static_cast<std::int32_t>(whole(sample.z));
+    const auto z = static_cast<std::int32_t>(whole(sample.z));
+    heights_[index(sample.column, sample.row)] = z;
+    blocks_.put(sample.column, sample.row, z);
   }
   double fineness() const override { return 1 / scale_; }
   double most() const override { return largest_ / scale_; }
@@ -102,7 +113,8 @@ class WholeGridSamples final : public GridSamples {
   int shift_;
   double scale_, largest_;  // 2^shift; the largest absolute height of a sample or corner, times that
   bool any_height_;         // corners need not be samples
-  std::vector<std::int32_t> heights_;
+  base::Array<std::int32_t> heights_;
+  Blocks blocks_;
 };
 
 /// Any heights: scans take doubles, and doubtful cells are judged exactly.
@@ -114,7 +126,7 @@ class RealGridSamples final : public GridSamples {
 
   /// Requires: can_hold().
   RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
-                  const base::Progress* progress);
+                  const GridKeeping& keeping);
   void put(const CellSample& sample) { heights_[index(sample.column, sample.row)] = sample.z; }
 
  private:
@@ -125,7 +137,7 @@ class RealGridSamples final : public GridSamples {
   Scan judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const;
   double height_or_nan(SampleIndex cell) const override;
 
-  std::vector<double> heights_;  // NaN: no sample
+  base::Array<double> heights_;  // NaN: no sample
 };
 
 }  // namespace tin::simplify

@@ -40,6 +40,12 @@ int fraction_bits(double z) {
   return std::max(0, 53 - exponent - std::countr_zero(static_cast<std::uint64_t>(mantissa)));
 }
 
+constexpr std::size_t kOften = 16384;  // samples between two questions whether to go on
+
+bool is_cancelled(const base::Progress* progress) {
+  return progress != nullptr && progress->cancelled();
+}
+
 /// What samples are made of: all of a source, people's own, then the vertices where neither has one.
 class Input {
  public:
@@ -60,33 +66,55 @@ class Input {
     return terrain_->source_grid();
   }
 
-  /// Calls visit(position, height) for each sample; false when cancelled.
-  template <class Visit>
-  bool visit(const base::Progress* progress, const Visit& visit) const {
-    if (are_vertices()) return visit_vertices(progress, visit);
-    for (std::size_t i = 0; source_ != nullptr && i < source_->size(); ++i) {
-      if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
-      if (source_->is_sample(i)) visit(source_->at(i), source_->z(i));
-    }
+  /// Calls visit(cell) for each sample at a cell's centre and off_grid(position, height) for all others; false when cancelled.
+  template <class Visit, class OffGrid>
+  bool visit(const base::Progress* progress, const Visit& visit, const OffGrid& off_grid) const {
+    const SourceGrid* const grid = this->grid();
+    const auto sort = [&](Point p, double z) {
+      const auto cell = grid == nullptr ? std::nullopt : grid->cell_centred_at(p);
+      cell ? visit(CellSample{cell->column, cell->row, z}) : off_grid(p, z);
+    };
+    if (are_vertices()) return visit_vertices(progress, sort);
+    if (source_ != nullptr && !visit_source(progress, visit, sort)) return false;
     for (std::size_t i = 0; i < others_.size(); ++i) {
-      if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
-      visit(others_[i].at, others_[i].z);
+      if (i % kOften == 0 && is_cancelled(progress)) return false;
+      sort(others_[i].at, others_[i].z);
     }
-    return progress == nullptr || !progress->cancelled();
+    return !is_cancelled(progress);
   }
 
  private:
   /// Nothing but the vertices: they need not be copied.
   bool are_vertices() const { return source_ == nullptr && others_.empty(); }
 
+  /// A raster's cells are known by where they are, which matters where there are hundreds of millions.
+  template <class Visit, class Sort>
+  bool visit_source(const base::Progress* progress, const Visit& visit, const Sort& sort) const {
+    if (!source_->is_raster()) {
+      for (std::size_t i = 0; i < source_->size(); ++i) {
+        if (i % kOften == 0 && is_cancelled(progress)) return false;
+        if (source_->is_sample(i)) sort(source_->at(i), source_->z(i));
+      }
+      return true;
+    }
+    std::size_t i = 0;
+    for (std::int32_t row = 0; row < source_->grid()->height; ++row) {
+      if (is_cancelled(progress)) return false;
+      for (std::int32_t column = 0; column < source_->grid()->width; ++column, ++i) {
+        if (source_->is_sample(i)) visit(CellSample{column, row, source_->z(i)});
+      }
+    }
+    return true;
+  }
+
   template <class Visit>
   bool visit_vertices(const base::Progress* progress, const Visit& visit) const {
     const mesh::Mesh& mesh = terrain_->mesh();
     for (std::uint32_t i = 1; i < mesh.vertex_slots(); ++i) {
-      if (i % 16384 == 0 && progress != nullptr && progress->cancelled()) return false;
+      if (i % kOften == 0 && is_cancelled(progress)) return false;
       if (mesh.is_alive(VertexSlot(i))) visit(mesh.point(VertexSlot(i)), terrain_->z(VertexSlot(i)));
     }
-    return progress == nullptr || !progress->cancelled();
+    return !is_cancelled(progress);
   }
 
   const Terrain* terrain_;
@@ -96,12 +124,20 @@ class Input {
 
 std::optional<Survey> survey(const Input& input, const base::Progress* progress) {
   Survey out;
-  const SourceGrid* const grid = input.grid();
-  const bool finished = input.visit(progress, [&](Point p, double z) {
-    ++(grid != nullptr && grid->cell_centred_at(p) ? out.on_cells : out.others);
+  const auto look_at = [&out](double z) {
     out.largest = std::max(out.largest, std::abs(z));
     out.shift = std::max(out.shift, fraction_bits(z));
-  });
+  };
+  const bool finished = input.visit(
+      progress,
+      [&](const CellSample& cell) {
+        ++out.on_cells;
+        look_at(cell.z);
+      },
+      [&](Point, double z) {
+        ++out.others;
+        look_at(z);
+      });
   if (!finished) return std::nullopt;
   return out;
 }
@@ -119,20 +155,21 @@ bool is_worth_scanning(const SourceGrid& grid, const Survey& found) {
          cells + static_cast<double>(found.others) < 0x1p+32 && std::max(grid.width, grid.height) < kMostCells;
 }
 
-std::vector<Facet::Corner> all_points(const Input& input, const SourceGrid* except_on, std::size_t count) {
+std::vector<Facet::Corner> points_of(const Input& input, bool with_cells, std::size_t count) {
   std::vector<Facet::Corner> out;
   out.reserve(count);
-  input.visit(nullptr, [&](Point p, double z) {
-    if (except_on == nullptr || !except_on->cell_centred_at(p)) out.push_back({p, z});
-  });
+  input.visit(
+      nullptr,
+      [&](const CellSample& cell) {
+        if (with_cells) out.push_back({input.grid()->centre(cell.column, cell.row), cell.z});
+      },
+      [&](Point p, double z) { out.push_back({p, z}); });
   return out;
 }
 
 template <class Grid>
 std::unique_ptr<Samples> filled(std::unique_ptr<Grid> grid, const Input& input, const base::Progress* progress) {
-  const bool finished = input.visit(progress, [&](Point p, double z) {
-    if (const auto cell = input.grid()->cell_centred_at(p)) grid->put({cell->column, cell->row, z});
-  });
+  const bool finished = input.visit(progress, [&](const CellSample& cell) { grid->put(cell); }, [](Point, double) {});
   return finished ? std::move(grid) : nullptr;
 }
 
@@ -174,36 +211,34 @@ std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box
 namespace {
 
 std::unique_ptr<Samples> plain_samples(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own,
-                                       bool any_height, base::Progress* progress) {
+                                       const Demands& demands, base::Progress* progress) {
   const Input input(terrain, source, own);
   const auto found = survey(input, progress);
   if (!found) return nullptr;
   const SourceGrid* const grid = input.grid();
   if (grid != nullptr && is_worth_scanning(*grid, *found)) {
-    auto others = found->others == 0 ? std::vector<Facet::Corner>() : all_points(input, grid, found->others);
-    const int shift = any_height ? std::max(found->shift, fine_shift(found->largest)) : found->shift;
-    const double largest = any_height ? 2 * found->largest : found->largest;
+    auto others = found->others == 0 ? std::vector<Facet::Corner>() : points_of(input, false, found->others);
+    const GridKeeping keeping{demands.memory, progress};
+    const int shift = demands.any_height ? std::max(found->shift, fine_shift(found->largest)) : found->shift;
+    const double largest = demands.any_height ? 2 * found->largest : found->largest;
     if (WholeGridSamples::can_hold(*grid, shift, largest)) {
-      return filled(std::make_unique<WholeGridSamples>(*grid, shift, largest, any_height, std::move(others), progress), input, progress);
+      return filled(std::make_unique<WholeGridSamples>(*grid, shift, largest, demands.any_height, std::move(others), keeping), input,
+                    progress);
     }
     if (RealGridSamples::can_hold(found->largest)) {
-      return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), progress), input, progress);
+      return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), keeping), input, progress);
     }
   }
-  auto points = std::make_unique<PointSamples>(all_points(input, nullptr, found->on_cells + found->others), 0, progress);
-  if (progress != nullptr && progress->cancelled()) return nullptr;
+  auto points = std::make_unique<PointSamples>(points_of(input, true, found->on_cells + found->others), 0, progress);
+  if (is_cancelled(progress)) return nullptr;
   return points;
-}
-
-bool is_cancelled(const base::Progress* progress) {
-  return progress != nullptr && progress->cancelled();
 }
 
 }  // namespace
 
 std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own,
                                       const Demands& demands, base::Progress* progress) {
-  auto samples = plain_samples(terrain, source, own, demands.any_height, progress);
+  auto samples = plain_samples(terrain, source, own, demands, progress);
   if (samples == nullptr || (demands.keep_flat == 0 && !demands.surface)) return samples;
   if (hull_corners(*samples, samples->extent().box).size() < 3) return samples;  // all in a line: all of them stay
   std::shared_ptr<const SourceMesh> mesh;

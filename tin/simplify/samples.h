@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -126,6 +127,8 @@ struct Demands {
   /// The surface that the samples make counts, and not only they.
   bool surface = false;
   unsigned threads = 1;
+  /// For what is as large as the raster.
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
 };
 
 /// The samples of `source`, those that are people's `own`, and the vertices of `terrain` where neither has a sample. `terrain` or

@@ -37,7 +37,8 @@ Result<void> check(const Options& options) {
 }
 
 Demands demands_of(const Options& options) {
-  return {options.elevations == Elevations::kFit, options.keep_flat, options.against == Against::kSurface, options.threads};
+  return {options.elevations == Elevations::kFit, options.keep_flat, options.against == Against::kSurface, options.threads,
+          options.memory};
 }
 
 Result<void> check_budget(const Options& options, std::size_t needed) {

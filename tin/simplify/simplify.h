@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -63,6 +64,9 @@ struct Options {
   /// Local search follows it; the result depends on it, but not on the threads.
   std::uint64_t seed = 1;
   unsigned threads = 1;
+  /// For the one array that is as large as the raster: 4 bytes a cell where heights are whole multiples of 2^-16, else 8. It is filled
+  /// row by row and then read where the work is. All else, but for keep_flat and Against::kSurface, grows with the result.
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
 };
 
 /// The sample that is furthest from the result, or a place between two of them.

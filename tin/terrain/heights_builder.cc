@@ -35,7 +35,7 @@ bool to_stored(double z, int shift, T& out) {
 
 /// All values in another form; false, and nothing of worth in `to`, when one has none.
 template <class From, class To>
-bool convert(const std::vector<From>& from, int from_shift, std::vector<To>& to, int to_shift) {
+bool convert(const base::Array<From>& from, int from_shift, base::Array<To>& to, int to_shift) {
   for (const From value : from) {
     To stored{};
     if (!to_stored(std::ldexp(static_cast<double>(value), -from_shift), to_shift, stored)) return false;
@@ -46,8 +46,9 @@ bool convert(const std::vector<From>& from, int from_shift, std::vector<To>& to,
 
 }  // namespace
 
-HeightsBuilder::HeightsBuilder(std::size_t expected) : expected_(expected) {
-  std::vector<std::int16_t> narrow;
+HeightsBuilder::HeightsBuilder(std::size_t expected, std::pmr::memory_resource* memory)
+    : expected_(expected), memory_(memory) {
+  base::Array<std::int16_t> narrow(memory_);
   narrow.reserve(expected);
   heights_.stored = std::move(narrow);
 }
@@ -66,24 +67,25 @@ bool HeightsBuilder::try_add(double z) {
 /// The next form that holds what is there already: 16 bits; 32 bits in whole, 1/16, ... 1/65536 units; float;
 /// double.
 void HeightsBuilder::widen() {
-  const auto with = [this]<class To>(std::vector<To> to, int shift) {
+  const auto with = [this]<class To>(To /*of which form*/, int shift) {
+    base::Array<To> to(memory_);
     to.reserve(expected_);
     const bool all = std::visit([&](const auto& from) { return convert(from, heights_.shift, to, shift); },
                                 heights_.stored);
     if (all) heights_ = {std::move(to), shift};
     return all;
   };
-  if (std::holds_alternative<std::vector<std::int16_t>>(heights_.stored)) {
-    with(std::vector<std::int32_t>(), 0);
+  if (std::holds_alternative<base::Array<std::int16_t>>(heights_.stored)) {
+    with(std::int32_t{}, 0);
     return;
   }
-  if (std::holds_alternative<std::vector<std::int32_t>>(heights_.stored)) {
+  if (std::holds_alternative<base::Array<std::int32_t>>(heights_.stored)) {
     for (int shift = heights_.shift + kShiftStep; shift <= kMostShift; shift += kShiftStep) {
-      if (with(std::vector<std::int32_t>(), shift)) return;
+      if (with(std::int32_t{}, shift)) return;
     }
-    if (with(std::vector<float>(), 0)) return;
+    if (with(float{}, 0)) return;
   }
-  with(std::vector<double>(), 0);
+  with(double{}, 0);
 }
 
 void HeightsBuilder::add(double z) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory_resource>
 
 #include "tin/terrain/source_samples.h"
 
@@ -15,7 +16,8 @@ namespace tin::terrain {
 /// O(1) each. Memory: the present form, and for a moment the next one beside it.
 class HeightsBuilder {
  public:
-  explicit HeightsBuilder(std::size_t expected);
+  explicit HeightsBuilder(std::size_t expected,
+                          std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   /// Requires: finite.
   void add(double z);
@@ -29,6 +31,7 @@ class HeightsBuilder {
   void widen();
 
   std::size_t expected_;
+  std::pmr::memory_resource* memory_;
   SourceSamples::Heights heights_;
 };
 

@@ -28,8 +28,8 @@ bool fit(std::span<const double> heights, int shift) {
 }
 
 template <class T>
-std::vector<T> stored(std::span<const double> heights, int shift) {
-  std::vector<T> out;
+base::Array<T> stored(std::span<const double> heights, int shift) {
+  base::Array<T> out;
   out.reserve(heights.size());
   for (const double z : heights) out.push_back(std::isnan(z) ? T{} : static_cast<T>(std::ldexp(z, shift)));
   return out;

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "tin/base/array.h"
 #include "tin/exact/point.h"
 #include "tin/terrain/edit.h"
 #include "tin/terrain/source_grid.h"
@@ -24,9 +25,11 @@ namespace tin::terrain {
 /// rank among the points, sorted by position.
 class SourceSamples {
  public:
-  /// Heights in the narrowest form that keeps each of them bit for bit. Integers are multiples of 2^-shift.
+  /// Heights in the narrowest form that keeps each of them bit for bit, in memory of the maker's choice, which must outlive them.
+  /// Integers are multiples of 2^-shift.
   struct Heights {
-    std::variant<std::vector<std::int16_t>, std::vector<std::int32_t>, std::vector<float>, std::vector<double>> stored;
+    std::variant<base::Array<std::int16_t>, base::Array<std::int32_t>, base::Array<float>, base::Array<double>>
+        stored;
     int shift = 0;
 
     double at(std::size_t i) const;

@@ -24,7 +24,7 @@ Import sample() {
       SourceGrid{3, 2, 0, 0, 1000, -1000, {5e5, 10, 0, 5e6, 0, -10}, -9999.0, "Int16", {
                    0b111111
                  }});
-  import.heights.stored = std::vector<std::int16_t>{0, 1, 2, 3, 4, 5};
+  import.heights.stored = tin::base::Array<std::int16_t>{0, 1, 2, 3, 4, 5};
   import.heights.shift = 1;
   return import;
 }
@@ -149,12 +149,12 @@ TEST(ImportWireTest, WhatIsNoTerrainIsRefused) {
   EXPECT_FALSE(with([](Import&, SourceGrid& g) { g.dx = 1 << 29; }));
   EXPECT_FALSE(with([](Import&, SourceGrid& g) { g.geotransform[3] = kNan; }));
   EXPECT_FALSE(with([](Import&, SourceGrid& g) { g.valid.push_back(0); }));
-  EXPECT_FALSE(with([](Import& i, SourceGrid&) { i.heights.stored = std::vector<std::int16_t>(7); }));
+  EXPECT_FALSE(with([](Import& i, SourceGrid&) { i.heights.stored = tin::base::Array<std::int16_t>(7); }));
   EXPECT_FALSE(with([](Import& i, SourceGrid&) { i.heights.shift = 1000; }));
   const auto doubles = [&](double last) {
     return with([last](Import& i, SourceGrid& g) {
       g.valid = {0b011111};
-      i.heights.stored = std::vector<double>{1, 2, 3, 4, last, kNan};
+      i.heights.stored = tin::base::Array<double>{1, 2, 3, 4, last, kNan};
     });
   };
   EXPECT_TRUE(doubles(5)) << "the last pixel is no sample";

@@ -1,5 +1,5 @@
-// Both scans of whole heights, the one four cells at a time where the processor can and the one in integers,
-// against each other and against a plain search.
+// The scans of whole heights, four cells at a time where the processor can, in integers, and past whole squares of cells, against
+// each other and against a plain search.
 #include "tin/simplify/whole_scan.h"
 
 #include <gtest/gtest.h>
@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "tests/support/point_sets.h"
+#include "tin/simplify/block_scan.h"
 
 namespace {
 
 using support::Random;
+using tin::simplify::Blocks;
 using tin::simplify::GridPoint;
 using tin::simplify::WholeHeights;
 using tin::simplify::WholePlane;
@@ -39,6 +41,14 @@ class WholeScanTest : public testing::Test {
     return {at(kColumns), at(kRows)};
   }
   WholeHeights heights() const { return {cells_.data(), kColumns}; }
+  Blocks blocks() const {
+    Blocks out(kColumns, kRows);
+    for (std::int32_t i = 0; i < kColumns * kRows; ++i) {
+      const std::int32_t z = cells_[static_cast<std::size_t>(i)];
+      if (z != WholeHeights::kVoid) out.put(i % kColumns, i / kColumns, z);
+    }
+    return out;
+  }
 
   /// Over the triangle of these corners and heights.
   static WholePlane plane(GridPoint a, GridPoint b, GridPoint c, std::int64_t za, std::int64_t zb,
@@ -99,8 +109,30 @@ TEST_F(WholeScanTest, BothFindTheFirstOfTheWorstCells) {
   EXPECT_GT(tried, 3000);
 }
 
-TEST_F(WholeScanTest, BothMayStopOnlyAboveTheLimit) {
+TEST_F(WholeScanTest, SquaresThatArePassedOverHoldNoWorseCell) {
+  for (const std::int32_t largest : {0, 1, 30, (1 << 30) - 1}) {
+    for (const unsigned voids : {0U, 50U, 99U}) {
+      fill(largest, voids);
+      for (int islands = static_cast<int>(random_() % 3); islands > 0; --islands) {
+        cells_[random_() % (kWidth * kHeight)] = height(std::max(largest, 3));
+      }
+      const Blocks squares = blocks();
+      for (int round = 0; round < 300; ++round) {
+        // Level as the ground is in most, so that there is much to pass over.
+        const std::int32_t tilt = round % 3 == 0 ? largest : 0;
+        const auto p = plane(cell(80), cell(80), cell(80), height(tilt), height(tilt), height(tilt));
+        if (p.area == 0) continue;
+        const WorstCell expected = search(p), found = scan_by_blocks(heights(), squares, p, INT64_MAX);
+        EXPECT_EQ(found.distance, expected.distance);
+        ASSERT_TRUE(expected.distance == 0 || found.at == expected.at);
+      }
+    }
+  }
+}
+
+TEST_F(WholeScanTest, AllMayStopOnlyAboveTheLimit) {
   fill(300, 10);
+  const Blocks squares = blocks();
   for (int round = 0; round < 2000; ++round) {
     const auto p = plane(cell(60), cell(60), cell(60), height(300), height(300), height(300));
     if (p.area == 0) continue;
@@ -108,6 +140,7 @@ TEST_F(WholeScanTest, BothMayStopOnlyAboveTheLimit) {
     const bool is_over = search(p).distance > limit;
     EXPECT_EQ(scan_by_integers(heights(), p, limit).distance > limit, is_over);
     EXPECT_EQ(scan_by_doubles(heights(), p, limit).distance > limit, is_over);
+    EXPECT_EQ(scan_by_blocks(heights(), squares, p, limit).distance > limit, is_over);
   }
 }
 
