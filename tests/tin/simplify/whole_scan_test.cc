@@ -114,7 +114,7 @@ TEST_F(WholeScanTest, SquaresThatArePassedOverHoldNoWorseCell) {
     for (const unsigned voids : {0U, 50U, 99U}) {
       fill(largest, voids);
       for (int islands = static_cast<int>(random_() % 3); islands > 0; --islands) {
-        cells_[random_() % (kWidth * kHeight)] = height(std::max(largest, 3));
+        cells_[random_() % (kColumns * kRows)] = height(std::max(largest, 3));
       }
       const Blocks squares = blocks();
       for (int round = 0; round < 300; ++round) {
