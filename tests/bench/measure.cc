@@ -1,6 +1,7 @@
 #include "tests/bench/measure.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
@@ -66,6 +67,19 @@ JsonLine& JsonLine::add(const Spent& spent, std::size_t operations) {
   const double per_operation = 1e9 / static_cast<double>(operations);
   add("wall_s", spent.wall_s).add("user_s", spent.user_s).add("system_s", spent.system_s);
   return add("wall_ns_per_op", per_operation * spent.wall_s).add("cpu_ns_per_op", per_operation * spent.cpu_s());
+}
+
+pid_t start(const std::vector<std::string>& words, const std::string& output) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    if (std::freopen(output.c_str(), "w", stdout) == nullptr) _exit(126);
+    execvp(arguments[0], arguments.data());
+    _exit(127);
+  }
+  return child;
 }
 
 void JsonLine::print() const {

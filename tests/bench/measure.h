@@ -1,9 +1,12 @@
 // A stopwatch, peak memory and lines of JSON for the benchmarks.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bench {
 
@@ -32,6 +35,11 @@ class PeakMemory {
  private:
   std::size_t before_;
 };
+
+/// Starts the program words[0], found as a shell finds it, whose output goes to the file `output`. Returns its
+/// number, to be waited for; negative when there can be no process. It ends with 126 where `output` cannot be
+/// written and with 127 where there is no such program.
+pid_t start(const std::vector<std::string>& words, const std::string& output);
 
 /// One JSON object on one line: JsonLine("build").add("points", 5).print().
 class JsonLine {

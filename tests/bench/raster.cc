@@ -57,16 +57,8 @@ double rasterise(const Terrain& terrain, const Grid& grid, std::vector<double>* 
 /// Runs a program to its end without its output. Throws std::runtime_error when it fails.
 Spent run(const std::vector<std::string>& words) {
   const Stopwatch watch;
-  const pid_t child = fork();
-  if (child == 0) {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    setenv("GDAL_NUM_THREADS", "1", 1);
-    if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
-    execvp(arguments[0], arguments.data());
-    _exit(127);
-  }
+  setenv("GDAL_NUM_THREADS", "1", 1);
+  const pid_t child = start(words, "/dev/null");
   int status = 0;
   struct rusage used {};
   if (child < 0 || wait4(child, &status, 0, &used) != child || status != 0) {

@@ -61,15 +61,7 @@ struct Run {
 
 Run run(const std::vector<std::string>& words, const std::string& report) {
   const Stopwatch watch;
-  const pid_t child = fork();
-  if (child == 0) {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    if (std::freopen(report.c_str(), "w", stdout) == nullptr) _exit(126);
-    execvp(arguments[0], arguments.data());
-    _exit(127);
-  }
+  const pid_t child = start(words, report);
   int status = 0;
   struct rusage used {};
   MemoryWatch memory;
