@@ -27,6 +27,8 @@ bool on_hull_edge(const Seen& q, const Seen& r) {
   return q.x * r.x < 0 || (q.x == 0 && q.y * r.y < 0);
 }
 
+constexpr std::size_t kAhead = 2;  // edges
+
 }  // namespace
 
 bool at_vertex(const Stop& stop, VertexSlot& vertex) {
@@ -67,6 +69,7 @@ void Cavity::start(const Mesh& mesh, const Stop& stop) {
   edges_[0] = {finite ? stop.cb : 0, beyond(prev3(stop.apex)), 0, 1};
   edges_[1] = {stop.ba, beyond(stop.apex), 1, 2};
   edges_[2] = {finite ? stop.ac : 0, beyond(next3(stop.apex)), 2, 0};
+  for (int i = 0; i < 3; ++i) mesh.prefetch(beyond(i).triangle());
   triangles_[0] = stop.triangle;
   triangle_count_ = 1;
 }
@@ -84,6 +87,9 @@ void Cavity::start(const Mesh& mesh, const Stop& stop) {
 /// What a test finds is hard to foresee, so nothing branches on it: the triangle's two other edges are always
 /// written behind the last, and count if it is in conflict. Edges from one corner come one after the other,
 /// each nearer to the rim: the last stays.
+///
+/// Where the next edge is written depends on this test, so the processor cannot look ahead by itself: triangles
+/// are asked for when their edge is written, whether it counts or not, and corners kAhead edges before their turn.
 template <class Owner>
 bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& owner) {
   if (!owner.owns(stop.a.vertex) || !owner.owns(stop.b.vertex) || !owner.owns(stop.c.vertex)) return false;
@@ -102,6 +108,10 @@ bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& own
       triangles = triangles_.data();
     }
     const Edge edge = edges[i];
+    if (i + kAhead < 2 * count + 1) {
+      const HalfEdge later = edges[i + kAhead].beyond;
+      mesh.prefetch_point(mesh.vertex(later.triangle(), later.index()));
+    }
     const TriangleSlot t = edge.beyond.triangle();
     const int j = edge.beyond.index();
     const VertexSlot v = mesh.vertex(t, j);
@@ -115,6 +125,8 @@ bool Cavity::carve(const Mesh& mesh, Point p, const Stop& stop, const Owner& own
     triangles[count] = t;
     edges[2 * count + 1] = {from_apex, mesh.twin(t, next3(j)), edge.from, middle};
     edges[2 * count + 2] = {apex_to, mesh.twin(t, prev3(j)), middle, edge.to};
+    mesh.prefetch(edges[2 * count + 1].beyond.triangle());
+    mesh.prefetch(edges[2 * count + 2].beyond.triangle());
     const Int128 determinant =
         Int128{to.square} * from_apex + Int128{from.square} * apex_to - Int128{apex.square} * edge.cross;
     bool conflict = determinant > 0;

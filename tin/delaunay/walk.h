@@ -85,9 +85,10 @@ inline int next_edge(Stop& s) {
   return mesh::next3(s.apex);
 }
 
-/// Stands in the finite triangle `start`; returns the first edge to cross or -1.
+/// Stands in the finite triangle `start`, and asks for those around; returns the first edge to cross or -1.
 inline int begin_walk(const mesh::Mesh& mesh, exact::Point goal, mesh::TriangleSlot start, Stop& s) {
   const auto& first = mesh.triangle(start).vertices;
+  for (const mesh::HalfEdge e : mesh.triangle(start).neighbours) mesh.prefetch_with_points(e.triangle());
   s = {Stop::Kind::kInside, start, 0, corner_at(mesh, first[2], goal), corner_at(mesh, first[1], goal),
        corner_at(mesh, first[0], goal), 0, 0, 0, 0};
   s.ba = cross(s.b, s.a);
@@ -105,9 +106,13 @@ inline void go_over(const mesh::Mesh& mesh, int edge, Stop& s) {
   ++s.steps;
 }
 
-/// Looks at the third corner, and returns the next edge to cross or -1.
+/// Looks at the third corner, and returns the next edge to cross or -1. Both triangles that may come next are
+/// asked for before it is known which: they arrive while this one's corner does, and if the walk ends here they
+/// are what an insertion looks at first.
 inline int arrive(const mesh::Mesh& mesh, exact::Point goal, Stop& s) {
   const mesh::VertexSlot apex = mesh.vertex(s.triangle, s.apex);
+  mesh.prefetch_with_points(mesh.twin(s.triangle, mesh::next3(s.apex)).triangle());
+  mesh.prefetch_with_points(mesh.twin(s.triangle, mesh::prev3(s.apex)).triangle());
   s.c = corner_at(mesh, apex, goal);
   if (apex != mesh::kInfinite) return next_edge(s);
   s.kind = Stop::Kind::kOutside;

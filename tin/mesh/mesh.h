@@ -147,18 +147,15 @@ class Mesh {
   }
   void prefetch_point(VertexSlot v) const { __builtin_prefetch(&points_[v.value()]); }
   void prefetch(TriangleSlot t) const { __builtin_prefetch(&triangles_[t.value()]); }
-  /// What a walk from `t` likely touches, without a look at `t`: in a mesh stored along a curve, triangles
-  /// are twice as far in their array as their vertices are in theirs. Touches nothing, so that addresses
-  /// beyond the arrays do no harm.
+  // Without a look at `t`: in a mesh stored along a curve, triangles are twice as far in their array as their
+  // vertices are in theirs. They touch nothing, so that addresses beyond the arrays do no harm.
+  /// The triangle, and where its vertices may be.
+  void prefetch_with_points(TriangleSlot t) const { prefetch_lines(t, 0); }
+  /// What a walk from `t` likely touches.
   void prefetch_around(TriangleSlot t) const {
-    const auto triangle = reinterpret_cast<std::uintptr_t>(triangles_.data()) + t.value() * sizeof(Triangle);
-    const auto point =
-        reinterpret_cast<std::uintptr_t>(points_.data()) + t.value() / 2 * sizeof(exact::Point);
-    for (const std::uintptr_t line :
-         {std::uintptr_t{0} - kCacheLine, std::uintptr_t{0}, std::uintptr_t{kCacheLine}}) {
-      __builtin_prefetch(reinterpret_cast<const void*>(triangle + line));
-      __builtin_prefetch(reinterpret_cast<const void*>(point + line));
-    }
+    prefetch_lines(t, std::uintptr_t{0} - kCacheLine);
+    prefetch_lines(t, 0);
+    prefetch_lines(t, kCacheLine);
   }
 
  private:
@@ -166,6 +163,13 @@ class Mesh {
   static constexpr std::uint32_t kDead = kNone;
   static constexpr std::uint32_t kNoTriangle = kNone - 1;
 
+  void prefetch_lines(TriangleSlot t, std::uintptr_t offset) const {
+    const auto triangle = reinterpret_cast<std::uintptr_t>(triangles_.data()) + t.value() * sizeof(Triangle);
+    const auto point =
+        reinterpret_cast<std::uintptr_t>(points_.data()) + t.value() / 2 * sizeof(exact::Point);
+    __builtin_prefetch(reinterpret_cast<const void*>(triangle + offset));
+    __builtin_prefetch(reinterpret_cast<const void*>(point + offset));
+  }
   std::vector<TriangleSlot> renumber_triangles(const std::vector<VertexSlot>& new_of_old);
 
   PageVector<exact::Point> points_;
