@@ -32,9 +32,9 @@ int rounds_of(Effort effort) {
     case Effort::kBalanced:
       return 2;
     case Effort::kThorough:
-      return 14;
+      return 8;
     case Effort::kBest:
-      return 80;
+      return 50;
   }
   return 0;
 }
@@ -72,7 +72,7 @@ class Reduction {
 
   /// One round. False when cancelled; then `tin` is null.
   bool search(std::unique_ptr<Patch>& tin, double tolerance, const Phase& phase) {
-    constexpr std::size_t kTriesPerVertex = 4;
+    constexpr std::size_t kTriesPerVertex = 2;
     const std::size_t vertices = tin->mesh().vertex_count();
     const double x = random_.fraction(), y = random_.fraction();
     const auto tiling = vertices < kFewVertices ? Tiling(samples_.extent(), 1, 1)
