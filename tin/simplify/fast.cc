@@ -72,7 +72,13 @@ bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<cons
     patch.collect(found[tile]);
     for (Pin& pin : found[tile]) pin.fixed = false;
   });
-  for (const auto& part : found) pins.insert(pins.end(), part.begin(), part.end());
+  std::size_t count = pins.size();
+  for (const auto& part : found) count += part.size();
+  pins.reserve(count);  // they are many, and doubling would ask for twice as much
+  for (auto& part : found) {
+    pins.insert(pins.end(), part.begin(), part.end());
+    std::vector<Pin>().swap(part);
+  }
   return finished;
 }
 
