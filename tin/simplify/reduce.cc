@@ -47,7 +47,8 @@ class Reduction {
         options_(options),
         random_(options.seed),
         rounds_(rounds_of(options.effort)) {
-    if (options.elevations == Elevations::kFit) rounds_ = std::max(rounds_, 1);  // it is the search that fits
+    // It is the search that fits, and there is more to find.
+    if (options.elevations == Elevations::kFit) rounds_ = std::max(2 * rounds_, 1);
   }
 
   std::optional<Reduced> run(const Phase& phase) {
