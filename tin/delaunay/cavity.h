@@ -34,6 +34,18 @@ class Cavity {
   mesh::TriangleSlot fill(mesh::Mesh& mesh, mesh::VertexSlot v, mesh::TriangleSlot extra1,
                           mesh::TriangleSlot extra2, Direction toward = {});
 
+  /// After carve(): calls visit(from, to) for each edge around the triangles in conflict, counter-clockwise, until
+  /// it returns false. They make a triangle each with the new point. Returns whether all were visited.
+  template <class Visit>
+  bool visit_rim(const Visit& visit) const {
+    std::uint32_t at = 0;
+    do {
+      const std::uint32_t to = rim_[at].to;
+      if (!visit(corners_[at].vertex, corners_[to].vertex)) return false;
+      at = to;
+    } while (at != 0);
+    return true;
+  }
   /// A triangle in conflict, after carve().
   mesh::TriangleSlot some_triangle() const { return triangles_.front(); }
   /// The new star, after fill().

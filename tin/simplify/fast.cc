@@ -1,11 +1,11 @@
 #include "tin/simplify/fast.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "tin/simplify/decimate.h"
 #include "tin/simplify/greedy.h"
+#include "tin/simplify/search.h"
 #include "tin/simplify/tiles.h"
 
 namespace tin::simplify {
@@ -38,27 +38,23 @@ std::size_t samples_in(const Samples& samples, const Tiling& tiling, std::size_t
     return (static_cast<double>(box.max.x) - box.min.x) * (static_cast<double>(box.max.y) - box.min.y);
   };
   const Extent extent = samples.extent();
-  return static_cast<std::size_t>(static_cast<double>(extent.samples) * area(tiling.box(tile)) / std::max(area(extent.box), 1.0));
+  return static_cast<std::size_t>(static_cast<double>(extent.samples) * area(tiling.box(tile)) /
+                                  std::max(area(extent.box), 1.0));
 }
 
-/// Brings a tile's TIN within the tolerance. By way of a looser tolerance one vertex in fifty to a hundred is
-/// spared, which is worth the time where vertices are few among the samples: there most of it goes into the first
-/// scans.
-void thin(Patch& patch, double tolerance, std::size_t samples, const Phase& phase) {
-  constexpr double kLooser = 1.15;
-  constexpr std::size_t kManySamples = 24;  // for each vertex
-  const double looser = tolerance * kLooser;
-  if (looser <= std::numeric_limits<double>::max()) {
-    Greedy(patch, looser).run(Greedy::kNoBudget, phase);
-    if (patch.mesh().vertex_count() * kManySamples < samples) Decimation(patch, looser).run(phase);
-  }
+/// Brings a tile's TIN within the tolerance. A little local search finds what deletion alone does not, and
+/// spares more than a detour over a looser tolerance in the same time.
+void thin(Patch& patch, double tolerance, std::size_t samples, std::uint64_t seed, const Phase& phase) {
+  constexpr std::size_t kVerticesPerTry = 6, kSamplesPerTry = 48;
   Greedy(patch, tolerance).run(Greedy::kNoBudget, phase);
   Decimation(patch, tolerance).run(phase);
+  const std::size_t tries = std::min(patch.mesh().vertex_count() / kVerticesPerTry, samples / kSamplesPerTry);
+  Search(patch, tolerance, Elevations::kSource, seed).run(tries, [&phase] { return phase.cancelled(); });
 }
 
 /// The samples of each tile alone, from the corners of their hull and from those in it on that never go.
-bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<const SampleIndex> fixed, double tolerance,
-                    unsigned threads, const Phase& phase, std::vector<Pin>& pins) {
+bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<const SampleIndex> fixed,
+                    double tolerance, unsigned threads, const Phase& phase, std::vector<Pin>& pins) {
   std::vector<std::vector<Pin>> found(tiling.size());
   const bool finished = for_each_tile(tiling.size(), threads, phase, [&](std::size_t tile) {
     std::vector<Pin> corners;
@@ -71,16 +67,24 @@ bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<cons
     }
     unite(corners);
     Patch patch(samples, {}, corners);
-    if (patch.mesh().dimension() == 2) thin(patch, tolerance, samples_in(samples, tiling, tile), phase.silent());
+    if (patch.mesh().dimension() == 2)
+      thin(patch, tolerance, samples_in(samples, tiling, tile), Random(tile).next(), phase.silent());
     patch.collect(found[tile]);
     for (Pin& pin : found[tile]) pin.fixed = false;
   });
-  for (const auto& part : found) pins.insert(pins.end(), part.begin(), part.end());
+  std::size_t count = pins.size();
+  for (const auto& part : found) count += part.size();
+  pins.reserve(count);  // they are many, and doubling would ask for twice as much
+  for (auto& part : found) {
+    pins.insert(pins.end(), part.begin(), part.end());
+    std::vector<Pin>().swap(part);
+  }
   return finished;
 }
 
-/// Which triangles are known from a tile's own TIN. A triangle with all corners inside one tile is empty of its vertices, so it
-/// was there too; and where a vertex has only such triangles, its star is the same. Unsettles all other vertices.
+/// Which triangles are known from a tile's own TIN. A triangle with all corners inside one tile is empty of
+/// its vertices, so it was there too; and where a vertex has only such triangles, its star is the same.
+/// Unsettles all other vertices.
 std::vector<bool> find_seams(Patch& tin, const Tiling& tiling) {
   const mesh::Mesh& mesh = tin.mesh();
   std::vector<std::uint32_t> tile_of(mesh.vertex_slots(), mesh::kNone);
@@ -111,8 +115,8 @@ bool repair_patches(std::unique_ptr<Patch>& tin, std::size_t patches, double tol
 }
 
 /// Where there are many tiles, most of what is to be done at their seams is done in larger ones that lie
-/// elsewhere, then in still larger ones: by all threads, and near by, so that little of a large raster is needed
-/// at a time. False when cancelled.
+/// elsewhere, then in still larger ones: by all threads, and near by, so that little of a large raster is
+/// needed at a time. False when cancelled.
 bool join_tiles(std::unique_ptr<Patch>& tin, std::size_t tiles, double tolerance, unsigned threads,
                 const Phase& phase) {
   double from = 0;
@@ -130,14 +134,15 @@ bool repair(std::unique_ptr<Patch>& tin, double tolerance, unsigned threads, con
   const std::size_t patches = patch_count(tin->mesh().vertex_count());
   if (patches > 1 && !repair_patches(tin, patches, tolerance, threads, phase.part(0, 0.8))) return false;
   const Phase rest = phase.part(patches > 1 ? 0.8 : 0, 1);
-  const bool finished = Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5)) != Greedy::End::kCancelled &&
-                        Decimation(*tin, tolerance).run(rest.part(0.5, 1));
+  const bool finished =
+      Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5)) != Greedy::End::kCancelled &&
+      Decimation(*tin, tolerance).run(rest.part(0.5, 1));
   if (!finished) tin.reset();
   return finished;
 }
 
-std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const SampleIndex> corners, double tolerance,
-                                       unsigned threads, const Phase& phase) {
+std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const SampleIndex> corners,
+                                       double tolerance, unsigned threads, const Phase& phase) {
   const Extent extent = samples.extent();
   const Tiling tiling = Tiling::of_about(extent, extent.samples / kSamplesPerTile);
   std::vector<Pin> pins;
@@ -147,14 +152,15 @@ std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const S
   auto tin = std::make_unique<Patch>(samples, std::span<const Pin>(), pins, threads);
   std::vector<Pin>().swap(pins);
   const auto on_seam = find_seams(*tin, tiling);
-  // An edge of the samples' surface may have called for a sample beyond the tile, so nothing is known of any triangle.
-  // Nor is it after rounds in which others were made.
+  // An edge of the samples' surface may have called for a sample beyond the tile, so nothing is known of any
+  // triangle. Nor is it after rounds in which others were made.
   const bool in_rounds = tiling.size() / kTilesTogether >= kFewPatches;
   const bool all = samples.has_surface() || in_rounds;
   if (!join_tiles(tin, tiling.size(), tolerance, threads, phase.part(0.8, 0.9))) return nullptr;
   const auto suspect = [&on_seam, all](TriangleSlot t) { return all || on_seam[t.value()]; };
   const Phase rest = phase.part(in_rounds ? 0.9 : 0.8, 1);
-  if (Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5), suspect) == Greedy::End::kCancelled) return nullptr;
+  if (Greedy(*tin, tolerance).run(Greedy::kNoBudget, rest.part(0, 0.5), suspect) == Greedy::End::kCancelled)
+    return nullptr;
   if (!Decimation(*tin, tolerance).run(rest.part(0.5, 1))) return nullptr;
   return tin;
 }

@@ -11,7 +11,8 @@ using exact::Point;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
-Patch::Patch(const Samples& samples, std::span<const Pin> frozen, std::span<const Pin> owned, unsigned threads)
+Patch::Patch(const Samples& samples, std::span<const Pin> frozen, std::span<const Pin> owned,
+             unsigned threads)
     : samples_(&samples), owner_{static_cast<std::uint32_t>(frozen.size()) + 1} {
   const std::size_t count = frozen.size() + owned.size();
   // A few insertions must not double the arrays.
@@ -49,11 +50,20 @@ void Patch::put(VertexSlot v, const Site& site) {
 }
 
 std::optional<VertexSlot> Patch::insert(const Site& site, TriangleSlot near) {
+  if (!carve(site, near)) return std::nullopt;
+  return fill(site);
+}
+
+bool Patch::carve(const Site& site, TriangleSlot near) {
   const auto stop = delaunay::walk(mesh_, site.at, near, delaunay::Everywhere{});
   VertexSlot there;
-  if (delaunay::at_vertex(stop, there) || stop.kind != delaunay::Stop::Kind::kInside) return std::nullopt;
-  if (!cavity_.carve(mesh_, site.at, stop, owner_)) return std::nullopt;
-  const VertexSlot v = mesh_.add_vertex(site.at, stop.b.vertex);
+  if (delaunay::at_vertex(stop, there) || stop.kind != delaunay::Stop::Kind::kInside) return false;
+  beside_ = stop.b.vertex;
+  return cavity_.carve(mesh_, site.at, stop, owner_);
+}
+
+VertexSlot Patch::fill(const Site& site) {
+  const VertexSlot v = mesh_.add_vertex(site.at, beside_);
   const TriangleSlot extra = mesh_.claim_triangle(cavity_.some_triangle());
   cavity_.fill(mesh_, v, extra, mesh_.claim_triangle(extra));
   put(v, site);

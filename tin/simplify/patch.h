@@ -1,9 +1,10 @@
-// A piece of the simplified TIN while it is being made, small enough for the caches: the canonical triangulation of the
-// vertices in some part of the ground, which the patch owns, and of those linked to them, which are frozen.
+// A piece of the simplified TIN while it is being made, small enough for the caches: the canonical
+// triangulation of the vertices in some part of the ground, which the patch owns, and of those linked to
+// them, which are frozen.
 //
-// Every triangle that has an owned vertex is one of the whole TIN, since the owned vertices' stars are complete. So a
-// change that touches only triangles among owned vertices is the same change in the whole TIN, and patches of different
-// owners can be worked on at the same time; what would touch others is refused.
+// Every triangle that has an owned vertex is one of the whole TIN, since the owned vertices' stars are
+// complete. So a change that touches only triangles among owned vertices is the same change in the whole TIN,
+// and patches of different owners can be worked on at the same time; what would touch others is refused.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,8 @@ struct Pin {
 class Patch {
  public:
   /// Borrows `samples`. Building uses up to `threads` threads.
-  Patch(const Samples& samples, std::span<const Pin> frozen, std::span<const Pin> owned, unsigned threads = 1);
+  Patch(const Samples& samples, std::span<const Pin> frozen, std::span<const Pin> owned,
+        unsigned threads = 1);
 
   const Samples& samples() const { return *samples_; }
   const mesh::Mesh& mesh() const { return mesh_; }
@@ -43,21 +45,38 @@ class Patch {
   bool is_fixed(mesh::VertexSlot v) const { return (flags_[v.value()] & kFixed) != 0; }
   bool is_settled(mesh::VertexSlot v) const { return (flags_[v.value()] & kSettled) != 0; }
   void settle(mesh::VertexSlot v) { flags_[v.value()] |= kSettled; }
-  void unsettle(mesh::VertexSlot v) { flags_[v.value()] &= static_cast<std::uint8_t>(~kSettled); }
+  void unsettle(mesh::VertexSlot v) {
+    if (notes_ != nullptr && is_settled(v)) notes_->push_back(v);
+    flags_[v.value()] &= static_cast<std::uint8_t>(~kSettled);
+  }
+  /// From now on vertices that were settled and are no more are noted there; null: nowhere.
+  void note_unsettled(std::vector<mesh::VertexSlot>* notes) { notes_ = notes; }
   /// Owned vertices have slots from here on.
   std::uint32_t first_owned() const { return owner_.first; }
   std::size_t owned_count() const { return mesh_.vertex_count() - (owner_.first - 1); }
 
-  /// Makes the sample at `site` a vertex; `near` is a finite triangle to look for it from. Nothing, and no change, when a vertex
-  /// stands there, when it is outside the hull, or when triangles would be touched that are not the patch's own.
+  /// Makes the sample at `site` a vertex; `near` is a finite triangle to look for it from. Nothing, and no
+  /// change, when a vertex stands there, when it is outside the hull, or when triangles would be touched that
+  /// are not the patch's own.
   std::optional<mesh::VertexSlot> insert(const Site& site, mesh::TriangleSlot near);
+  /// The first half of insert(), which changes nothing: whether it would be done.
+  bool carve(const Site& site, mesh::TriangleSlot near);
+  /// After carve(): calls visit(from, to) for each side of the star that the vertex would have, until it
+  /// returns false. Returns whether all were visited.
+  template <class Visit>
+  bool visit_carved(const Visit& visit) const {
+    return cavity_.visit_rim(visit);
+  }
+  /// The second half. Requires: carve() said yes to this site's position, and nothing has changed since.
+  mesh::VertexSlot fill(const Site& site);
   /// Whether the patch may remove the alive vertex: it is not fixed, and its star is the patch's own.
   bool is_removable(mesh::VertexSlot v) const;
   /// False, and no change, when only collinear vertices would be left. Requires: is_removable(v).
   bool remove(mesh::VertexSlot v);
   /// Gives a vertex another height. Requires: its star is the patch's own.
   void set_height(mesh::VertexSlot v, double z);
-  /// Whether all triangles at an alive, owned vertex are the patch's own, so that what it does changes no others.
+  /// Whether all triangles at an alive, owned vertex are the patch's own, so that what it does changes no
+  /// others.
   bool has_star(mesh::VertexSlot v) const;
   /// Triangles made or bent by the last change, infinite ones among them.
   std::span<const mesh::TriangleSlot> fresh() const { return fresh_; }
@@ -80,10 +99,12 @@ class Patch {
   delaunay::OwnedFrom owner_;
   mesh::Mesh mesh_;
   delaunay::Cavity cavity_;
+  mesh::VertexSlot beside_ = mesh::kInfinite;  // what was carved
   removal::Remover remover_;
   std::vector<Site> sites_;          // by vertex slot
   std::vector<std::uint8_t> flags_;  // the same
   std::vector<mesh::TriangleSlot> fresh_;
+  std::vector<mesh::VertexSlot>* notes_ = nullptr;
 };
 
 }  // namespace tin::simplify

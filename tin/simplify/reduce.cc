@@ -32,9 +32,9 @@ int rounds_of(Effort effort) {
     case Effort::kBalanced:
       return 2;
     case Effort::kThorough:
-      return 14;
+      return 9;
     case Effort::kBest:
-      return 80;
+      return 50;
   }
   return 0;
 }
@@ -42,8 +42,13 @@ int rounds_of(Effort effort) {
 class Reduction {
  public:
   Reduction(const Samples& samples, std::span<const SampleIndex> corners, const Options& options)
-      : samples_(samples), corners_(corners), options_(options), random_(options.seed), rounds_(rounds_of(options.effort)) {
-    if (options.elevations == Elevations::kFit) rounds_ = std::max(rounds_, 1);  // it is the search that fits
+      : samples_(samples),
+        corners_(corners),
+        options_(options),
+        random_(options.seed),
+        rounds_(rounds_of(options.effort)) {
+    // It is the search that fits, and there is more to find.
+    if (options.elevations == Elevations::kFit) rounds_ = std::max(2 * rounds_, 1);
   }
 
   std::optional<Reduced> run(const Phase& phase) {
@@ -64,7 +69,8 @@ class Reduction {
     auto tin = reach_tolerance(samples_, corners_, tolerance, options_.threads, phase.part(0, share));
     if (!tin || rounds_ == 0 || tin->mesh().vertex_count() / kHopeless > budget) return tin;
     for (int round = 0; round < rounds_ && !out_of_time(); ++round) {
-      const double from = share + (1 - share) * round / rounds_, to = share + (1 - share) * (round + 1) / rounds_;
+      const double from = share + (1 - share) * round / rounds_,
+                   to = share + (1 - share) * (round + 1) / rounds_;
       if (!search(tin, tolerance, phase.part(from, to))) return nullptr;
     }
     return Decimation(*tin, tolerance).run(phase.part(1, 1)) ? std::move(tin) : nullptr;
@@ -72,15 +78,17 @@ class Reduction {
 
   /// One round. False when cancelled; then `tin` is null.
   bool search(std::unique_ptr<Patch>& tin, double tolerance, const Phase& phase) {
-    constexpr std::size_t kTriesPerVertex = 4;
+    constexpr double kTriesPerVertex = 1.5;
     const std::size_t vertices = tin->mesh().vertex_count();
     const double x = random_.fraction(), y = random_.fraction();
-    const auto tiling = vertices < kFewVertices ? Tiling(samples_.extent(), 1, 1)
-                                                : Tiling::of_about(samples_.extent(), patch_count(vertices), x, y);
+    const auto tiling = vertices < kFewVertices
+                            ? Tiling(samples_.extent(), 1, 1)
+                            : Tiling::of_about(samples_.extent(), patch_count(vertices), x, y);
     const std::uint64_t seed = random_.next();
     return work_in_patches(tin, tiling, options_.threads, phase, [&](Patch& patch, std::size_t tile) {
       const auto stop = [&] { return phase.cancelled() || out_of_time(); };
-      Search(patch, tolerance, options_.elevations, Random(seed + tile).next()).run(kTriesPerVertex * patch.owned_count(), stop);
+      Search(patch, tolerance, options_.elevations, Random(seed + tile).next())
+          .run(static_cast<std::size_t>(kTriesPerVertex * static_cast<double>(patch.owned_count())), stop);
     });
   }
 
@@ -95,8 +103,8 @@ class Reduction {
     return tighten(std::move(tin), *error, budget, phase.part(share, 1));
   }
 
-  /// Makes the largest error small with at most `budget` vertices: spends it, takes back what the error reached
-  /// does not need, spends that again. Returns the error; nothing when cancelled.
+  /// Makes the largest error small with at most `budget` vertices: spends it, takes back what the error
+  /// reached does not need, spends that again. Returns the error; nothing when cancelled.
   static std::optional<double> spend(Patch& tin, std::size_t budget, const Phase& phase) {
     double before = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kBudgetRounds; ++round) {
@@ -118,7 +126,8 @@ class Reduction {
   static double a_little_above(double error) { return error * (1 + 0x1p-40); }
 
   /// From a TIN within the budget on: local search makes it smaller, then a smaller error fills it up again.
-  std::optional<Reduced> tighten(std::unique_ptr<Patch> tin, double error, std::size_t budget, const Phase& phase) {
+  std::optional<Reduced> tighten(std::unique_ptr<Patch> tin, double error, std::size_t budget,
+                                 const Phase& phase) {
     const int rounds = 3 * rounds_;
     double target = error;
     std::vector<Pin> best;
@@ -153,7 +162,8 @@ class Reduction {
   }
 
   /// At first a little more is asked for than the budget gives, since search will find the rest.
-  static double next_target(double target, double best, std::size_t vertices, std::size_t budget, int round, int rounds) {
+  static double next_target(double target, double best, std::size_t vertices, std::size_t budget, int round,
+                            int rounds) {
     const double left = static_cast<double>(rounds - round - 1) / rounds;
     const double wanted = static_cast<double>(budget) * (1 + 0.1 * left);
     const double factor = std::pow(static_cast<double>(vertices) / wanted, 1 / kGrowth);
@@ -169,8 +179,8 @@ class Reduction {
 
 }  // namespace
 
-std::optional<Reduced> reduce(const Samples& samples, std::span<const SampleIndex> corners, const Options& options,
-                              const Phase& phase) {
+std::optional<Reduced> reduce(const Samples& samples, std::span<const SampleIndex> corners,
+                              const Options& options, const Phase& phase) {
   return Reduction(samples, corners, options).run(phase);
 }
 

@@ -25,8 +25,8 @@ namespace tin::simplify {
 
 /// How much time goes into fewer vertices.
 enum class Effort {
-  kFast,      // greedy insertion, then deletion of all that is not needed
-  kBalanced,  // about three times as long: local search on top
+  kFast,      // greedy insertion, then deletion of all that is not needed, and a little local search
+  kBalanced,  // about three times as long: more of it
   kThorough,  // ten times
   kBest,      // until out_of_time says so; without it, fifty times
 };

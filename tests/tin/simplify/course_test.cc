@@ -63,7 +63,8 @@ TEST_F(SimplifyTest, ThreadsDoNotChangeTheResult) {
   };
   // Several tiles, and several patches.
   const Terrain source = support::raster_terrain(heights(460, 330, wave));
-  for (Options options : {to(2), to(3, Effort::kBalanced), at_most(4000, Effort::kBalanced)}) {
+  const double noise = support::kSanitized ? 3.5 : 2;
+  for (Options options : {to(noise), to(noise + 1, Effort::kBalanced), at_most(4000, Effort::kBalanced)}) {
     const auto one = simplify(source, options, nullptr);
     for (const unsigned threads : {2U, 3U}) {
       options.threads = threads;
@@ -161,7 +162,8 @@ TEST_F(SimplifyTest, ACancelledSimplificationEndsWithinASecond) {
   const auto wave = [&](auto c, auto r) {
     return std::optional(std::round(300 * std::sin(c * 0.03) * std::cos(r * 0.02) + static_cast<double>(random_() % 12)));
   };
-  const Terrain source = support::raster_terrain(heights(480, 400, wave));
+  const Terrain source =
+      support::raster_terrain(support::kSanitized ? heights(200, 160, wave) : heights(480, 400, wave));
   Options all = to(2, Effort::kThorough);
   all.elevations = tin::simplify::Elevations::kFit;
   all.against = tin::simplify::Against::kSurface;

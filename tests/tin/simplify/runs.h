@@ -10,6 +10,13 @@
 
 namespace support {
 
+/// Whether everything takes ten times as long.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 tin::simplify::Options to(double tolerance, tin::simplify::Effort effort = tin::simplify::Effort::kFast);
 tin::simplify::Options at_most(std::size_t vertices,
                                tin::simplify::Effort effort = tin::simplify::Effort::kFast);
