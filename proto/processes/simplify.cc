@@ -1,5 +1,7 @@
 #include "proto/processes/simplify.h"
 
+#include "proto/bbox.h"
+
 namespace proto {
 
 using tin::base::Code;
@@ -234,6 +236,15 @@ Result<SimplifyElevations> parse_elevations(std::string_view text, std::string w
   if (text == "source") return SimplifyElevations::kSource;
   if (text == "fit") return SimplifyElevations::kFit;
   return error(Code::kInvalidValue, "elevations is source or fit", std::move(where));
+}
+
+Result<std::uint64_t> parse_keep_flat(std::string_view text, std::string where) {
+  if (text == "true") return kPlateauSamples;
+  if (text == "false") return 0;
+  auto count = parse_count(text, 1, kMaxCount, where);
+  if (!count && count.error().code == Code::kMalformed)
+    return error(Code::kMalformed, "keepFlat is true, false or a number of samples", std::move(where));
+  return count;
 }
 
 Result<SimplifyAgainst> parse_against(std::string_view text, std::string where) {

@@ -29,6 +29,9 @@ tin::base::Result<SimplifyAgainst> parse_against(std::string_view text, std::str
 
 /// How many level samples make a plateau, when a request does not say.
 inline constexpr std::uint64_t kPlateauSamples = 64;
+/// "true", "false" or a number of samples, as they stand in a query; 0: plateaus may be tilted. Errors:
+/// kMalformed, kInvalidValue.
+tin::base::Result<std::uint64_t> parse_keep_flat(std::string_view text, std::string where);
 
 /// Which vertices stay.
 struct SimplifyProtect {

@@ -241,7 +241,7 @@ void add_tins(http::Router& router, Context& context) {
   router.add({.method = Method::kPost,
               .pattern = "/tins",
               .query = {"id", "title", "crs", "resolution", "layer", "z-field", "class", "vertical-unit",
-                        "duplicates", "format", "tolerance", "effort", "elevations"},
+                        "duplicates", "format", "tolerance", "effort", "elevations", "keepFlat", "against"},
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});

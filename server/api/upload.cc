@@ -46,11 +46,12 @@ Result<std::vector<std::uint8_t>> parse_classes(const std::string& text) {
 
 /// What the parameter tolerance and those that go with it ask for, if it is there.
 Result<std::optional<tin::simplify::Options>> read_simplification(const Request& request) {
-  const auto text = request.query_value("tolerance"), effort = request.query_value("effort"),
-             elevations = request.query_value("elevations");
+  const auto text = request.query_value("tolerance");
   if (!text) {
-    if (effort) return error(Code::kInvalidValue, "An effort goes with a tolerance.", "query:effort");
-    if (elevations) return error(Code::kInvalidValue, "Elevations go with a tolerance.", "query:elevations");
+    for (const std::string name : {"effort", "elevations", "keepFlat", "against"}) {
+      if (request.query_value(name))
+        return error(Code::kInvalidValue, name + " goes with a tolerance.", "query:" + name);
+    }
     return std::optional<tin::simplify::Options>();
   }
   const auto tolerance = proto::parse_number(*text, "query:tolerance");
@@ -60,15 +61,25 @@ Result<std::optional<tin::simplify::Options>> read_simplification(const Request&
   tin::simplify::Options options;
   options.tolerance = *tolerance;
   options.threads = app::engine_threads();
-  if (effort) {
+  if (const auto effort = request.query_value("effort")) {
     const auto named = proto::parse_effort(*effort, "query:effort");
     if (!named) return named.error();
     options.effort = processes::effort_of(*named);
   }
-  if (elevations) {
+  if (const auto elevations = request.query_value("elevations")) {
     const auto named = proto::parse_elevations(*elevations, "query:elevations");
     if (!named) return named.error();
     options.elevations = processes::elevations_of(*named);
+  }
+  if (const auto flat = request.query_value("keepFlat")) {
+    const auto samples = proto::parse_keep_flat(*flat, "query:keepFlat");
+    if (!samples) return samples.error();
+    options.keep_flat = static_cast<std::size_t>(*samples);
+  }
+  if (const auto against = request.query_value("against")) {
+    const auto named = proto::parse_against(*against, "query:against");
+    if (!named) return named.error();
+    options.against = processes::against_of(*named);
   }
   return std::optional(std::move(options));
 }

@@ -85,7 +85,9 @@ TEST_F(SourceTest, AStraightImportEqualsASimplificationOfTheWhole) {
   EXPECT_EQ(digest("straight"), digest("whole"));
   expect_kept(dem, "straight", served_->simplify({{"tin", "straight"}, {"tolerance", 2}}), 2);
   for (const char* query : {"?tolerance=-1", "?tolerance=x", "?effort=fast", "?tolerance=1&effort=most",
-                            "?tolerance=1&effort=best", "?elevations=fit", "?tolerance=1&elevations=any"}) {
+                            "?tolerance=1&effort=best", "?elevations=fit", "?tolerance=1&elevations=any",
+                            "?keepFlat=true", "?against=surface", "?tolerance=1&keepFlat=0",
+                            "?tolerance=1&keepFlat=yes", "?tolerance=1&against=points"}) {
     const RawAnswer refused = served_->upload(query, dem.file);
     EXPECT_TRUE(refused.status == 400 || refused.status == 422) << query << refused.status;
   }
@@ -292,6 +294,13 @@ TEST_F(SourceTest, APlateauStaysFlatAndASurfaceIsKept) {
                            std::to_string(5000009 + (i * 53 % 480)) + ".7";
     const double before = served_->get("/tins/lake" + at).at("z"), after = served_->get("/tins/surface" + at).at("z");
     EXPECT_NEAR(before, after, 4 + 1e-9) << at;
+  }
+  // By the straight way, too.
+  for (const auto& [query, as] : {std::pair("tolerance=12&keepFlat=true", "flat"),
+                                  std::pair("tolerance=4&against=surface", "surface")}) {
+    const std::string id = std::string("straight-") + as;
+    ASSERT_EQ(served_->upload("?id=" + id + "&crs=EPSG:32725&" + query, file).status, 201);
+    EXPECT_EQ(digest(id), digest(as)) << query;
   }
 }
 
