@@ -8,6 +8,11 @@ namespace tin::base {
 /// Shared between one worker, which reports, and anyone who watches or cancels. Thread-safe.
 class Progress {
  public:
+  Progress() = default;
+  /// Of a part of the work that reports to nobody: cancelled when `whole` is, which may be null and must
+  /// outlive it.
+  explicit Progress(const Progress* whole) : whole_(whole) {}
+
   /// `fraction` of the present phase done, 0..1; without phases, of the work.
   void report(double fraction) {
     fraction_.store(phase_begin_ + fraction * (phase_end_ - phase_begin_), std::memory_order_relaxed);
@@ -22,9 +27,12 @@ class Progress {
 
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   /// Long loops ask at least every few milliseconds, and return Code::kCancelled when true.
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancelled() const {
+    return cancelled_.load(std::memory_order_relaxed) || (whole_ != nullptr && whole_->cancelled());
+  }
 
  private:
+  const Progress* whole_ = nullptr;
   double phase_begin_ = 0;
   double phase_end_ = 1;
   std::atomic<double> fraction_{0};

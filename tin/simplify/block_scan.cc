@@ -90,12 +90,13 @@ class BlockScan {
 }  // namespace
 
 WorstCell scan_by_blocks(const WholeHeights& heights, const Blocks& blocks, const WholePlane& plane,
-                         std::int64_t stop) {
+                         std::int64_t stop, const base::Pace& pace) {
   BlockScan scan(heights, blocks, plane);
   visit_spans(plane.a, plane.b, plane.c, [&](std::int32_t row, std::int32_t first, std::int32_t last) {
     if (scan.begins_strip(row)) scan.finish_strip();
     if (scan.worst().distance > stop) return false;
     scan.add(row, first, last);
+    pace.touched(1, static_cast<std::size_t>(last - first + 1) * sizeof(std::int32_t));
     return true;
   });
   scan.finish_strip();

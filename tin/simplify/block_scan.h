@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "tin/base/array.h"
 #include "tin/simplify/whole_scan.h"
 
 namespace tin::simplify {
@@ -47,8 +48,8 @@ class Blocks {
 };
 
 /// The answer of scan_by_integers(), sooner where most heights are near the triangle. Requires: `blocks` of
-/// these heights.
+/// these heights, `pace` of their memory.
 WorstCell scan_by_blocks(const WholeHeights& heights, const Blocks& blocks, const WholePlane& plane,
-                         std::int64_t stop);
+                         std::int64_t stop, const base::Pace& pace = {});
 
 }  // namespace tin::simplify

@@ -78,18 +78,43 @@ void narrow_on_cells(const Site& a, const Site& b, const Site& c, double toleran
   narrowing.narrow(heights, scale);
 }
 
+/// `count` cells without a sample; fewer when cancelled.
+template <class T>
+base::Array<T> void_cells(std::size_t count, T none, const GridKeeping& keeping) {
+  constexpr std::size_t kAtOnce = base::kPaceBytes / sizeof(T);
+  const base::Pace pace(keeping.memory);
+  base::Array<T> out(keeping.memory);
+  out.reserve(count);
+  while (out.size() < count && !(keeping.progress != nullptr && keeping.progress->cancelled())) {
+    out.resize(std::min(count, out.size() + kAtOnce), none);
+    pace.touched(1, base::kPaceBytes);
+  }
+  return out;
+}
+
 }  // namespace
 
 GridSamples::GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
-                         const base::Progress* progress)
+                         const GridKeeping& keeping)
     : grid_(grid),
-      others_(std::move(others), static_cast<SampleIndex>(cell_count()), progress),
-      progress_(progress) {}
+      others_(std::move(others), static_cast<SampleIndex>(cell_count()), keeping.progress),
+      progress_(keeping.progress),
+      footprint_(keeping.footprint),
+      pace_(keeping.memory) {}
+
+void GridSamples::note_scan(const Site& a, const Site& b, const Site& c) const {
+  if (!pace_.is_asked_for()) return;
+  const auto [low_row, high_row] = std::minmax({a.row, b.row, c.row});
+  const auto [low_column, high_column] = std::minmax({a.column, b.column, c.column});
+  pace_.touched(static_cast<std::size_t>(high_row - low_row) + 1,
+                (static_cast<std::size_t>(high_column - low_column) + 1) * bytes_per_cell());
+}
 
 Scan GridSamples::scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const {
   const bool on_cells = a.column >= 0 && b.column >= 0 && c.column >= 0;
   Scan found =
       on_cells ? scan_cells(a, b, c, tolerance, depth) : scan_between_cells(a, b, c, tolerance, depth);
+  if (on_cells) note_scan(a, b, c);
   if (!others_.empty()) keep_worse(found, others_.scan(a, b, c, tolerance, depth));
   return found;
 }
@@ -97,6 +122,7 @@ Scan GridSamples::scan(const Site& a, const Site& b, const Site& c, double toler
 void GridSamples::narrow(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const {
   if (a.column >= 0 && b.column >= 0 && c.column >= 0) {
     narrow_cells(a, b, c, tolerance, heights);
+    note_scan(a, b, c);
   } else {
     narrow_between_cells(a, b, c, tolerance, heights);
   }
@@ -115,6 +141,8 @@ void GridSamples::visit_between_cells(const Site& a, const Site& b, const Site& 
     const auto [low_x, high_x] = cut(corners, grid_.centre(0, row).y);
     if (low_x > high_x) continue;
     const auto columns = widened((low_x - grid_.x0) / grid_.dx, (high_x - grid_.x0) / grid_.dx, grid_.width);
+    pace_.touched(
+        1, static_cast<std::size_t>(std::max(0, columns.second - columns.first + 1)) * bytes_per_cell());
     for (std::int32_t column = columns.first; column <= columns.second; ++column) {
       const SampleIndex cell = index(column, row);
       const auto z = height(cell);
@@ -152,6 +180,7 @@ Site GridSamples::site(SampleIndex sample) const {
   const auto width = static_cast<SampleIndex>(grid_.width);
   const auto column = static_cast<std::int32_t>(sample % width),
              row = static_cast<std::int32_t>(sample / width);
+  pace_.touched(1, bytes_per_cell());
   return {grid_.centre(column, row), column, row, height(sample).value(), sample};
 }
 
@@ -166,6 +195,7 @@ void GridSamples::sites(SampleIndex begin, SampleIndex end, std::vector<Site>& o
     column = 0;
     ++row;
   }
+  if (begin < cells) pace_.touched(1, (cells - begin) * bytes_per_cell());
   for (SampleIndex sample = std::max(begin, cells); sample < end; ++sample) out.push_back(others_.site(sample));
 }
 
@@ -213,6 +243,8 @@ void GridSamples::outermost(const terrain::Box& box, std::vector<SampleIndex>& o
     while (first < last && !height(index(last, row))) --last;
     if (first <= last) out.push_back(index(first, row));
     if (first < last) out.push_back(index(last, row));
+    pace_.touched(2,
+                  static_cast<std::size_t>(first - first_column + last_column - last + 1) * bytes_per_cell());
   }
   others_.outermost(box, out);
 }
@@ -226,14 +258,15 @@ bool WholeGridSamples::can_hold(const terrain::SourceGrid& grid, int shift, doub
   return shift <= kMostShift && height < kMostHeight && cells < 0x1p+29 && 8 * height * cells < 0x1p+61;
 }
 
-WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
-                                   std::vector<Facet::Corner> others, const GridKeeping& keeping)
-    : GridSamples(grid, std::move(others), keeping.progress),
+WholeGridSamples::WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest,
+                                   bool any_height, std::vector<Facet::Corner> others,
+                                   const GridKeeping& keeping)
+    : GridSamples(grid, std::move(others), keeping),
       shift_(shift),
       scale_(std::ldexp(1.0, shift)),
       largest_(std::ldexp(largest, shift)),
       any_height_(any_height),
-      heights_(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid, keeping.memory),
+      heights_(void_cells(cell_count() + WholeHeights::kRoom, WholeHeights::kVoid, keeping)),
       blocks_(grid.width, grid.height) {}
 
 Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
@@ -255,7 +288,7 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
   const WholeHeights heights{heights_.data(), grid().width};
   const auto scan_all = [&] {
     const auto [low, high] = std::minmax({a.row, b.row, c.row});
-    if (high - low >= kTallRows) return scan_by_blocks(heights, blocks_, plane, stop);
+    if (high - low >= kTallRows) return scan_by_blocks(heights, blocks_, plane, stop, pace());
     return doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);
   };
   const WorstCell worst = scan_all();
@@ -284,8 +317,8 @@ double WholeGridSamples::height_or_nan(SampleIndex cell) const {
 
 RealGridSamples::RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
                                  const GridKeeping& keeping)
-    : GridSamples(grid, std::move(others), keeping.progress),
-      heights_(cell_count(), std::numeric_limits<double>::quiet_NaN(), keeping.memory) {}
+    : GridSamples(grid, std::move(others), keeping),
+      heights_(void_cells(cell_count(), std::numeric_limits<double>::quiet_NaN(), keeping)) {}
 
 Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
                                  Depth depth) const {
@@ -308,6 +341,8 @@ Scan RealGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, do
                 const double* const z = heights_.data() + start;
                 const double from_y = (row - a.row) * slope_y;
                 const std::int32_t from_a = first - a.column, count = last - first + 1;
+                if (row % kTallRows == 0)
+                  pace().touched(kTallRows, static_cast<std::size_t>(count) * sizeof(double));
                 for (std::int32_t i = 0; i < count; ++i) {
                   const double distance = std::abs(from_y + (from_a + i) * slope_x - area * (z[i] - a.z));
                   if (!(distance > worst)) continue;  // also where there is no sample

@@ -21,10 +21,12 @@ struct CellSample {
   double z;
 };
 
-/// Where a raster's heights lie, and who may put an end to looking at them (null: nobody).
+/// Where a raster's heights lie, who may put an end to looking at them, and who notes what that takes (null:
+/// nobody).
 struct GridKeeping {
   std::pmr::memory_resource* memory;
   const base::Progress* progress;
+  Footprint* footprint = nullptr;
 };
 
 /// What the two kinds of rasters share. Indices: row by row, then the samples off the raster.
@@ -42,12 +44,12 @@ class GridSamples : public Samples {
   }
   std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const override;
   bool has_neighbours() const override { return others_.empty(); }
+  Footprint* footprint() const override { return footprint_; }
   Extent extent() const override;
   void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 
  protected:
-  GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
-              const base::Progress* progress);
+  GridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others, const GridKeeping& keeping);
 
   /// Scans the cells of a triangle whose corners are cell centres.
   virtual Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance,
@@ -72,6 +74,10 @@ class GridSamples : public Samples {
   bool cancelled(std::int32_t row) const { return row % 64 == 0 && cancelled(); }
   bool cancelled() const { return progress_ != nullptr && progress_->cancelled(); }
   const terrain::SourceGrid& grid() const { return grid_; }
+  /// To be said after the cells between the rows and columns of these sites were looked at.
+  void note_scan(const Site& a, const Site& b, const Site& c) const;
+  const base::Pace& pace() const { return pace_; }
+  virtual std::size_t bytes_per_cell() const = 0;
 
  private:
   Scan scan_between_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const;
@@ -82,6 +88,8 @@ class GridSamples : public Samples {
   const terrain::SourceGrid& grid_;
   PointSamples others_;
   const base::Progress* progress_;
+  Footprint* footprint_;
+  base::Pace pace_;  // of the heights' memory
 };
 
 /// Heights that are whole multiples of 2^-shift: scans take integers only and are exact by themselves.
@@ -90,7 +98,7 @@ class WholeGridSamples final : public GridSamples {
   /// Whether integers are wide enough for such heights of samples and corners, of absolute values up to `largest`.
   static bool can_hold(const terrain::SourceGrid& grid, int shift, double largest);
 
-  /// Requires: can_hold().
+  /// Requires: can_hold(). May be without cells when cancelled: ask before putting any.
   WholeGridSamples(const terrain::SourceGrid& grid, int shift, double largest, bool any_height,
                    std::vector<Facet::Corner> others, const GridKeeping& keeping);
   void put(const CellSample& sample) {
@@ -109,6 +117,7 @@ class WholeGridSamples final : public GridSamples {
   Scan scan_cells(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
   void narrow_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override;
   double height_or_nan(SampleIndex cell) const override;
+  std::size_t bytes_per_cell() const override { return sizeof(std::int32_t); }
 
   int shift_;
   double scale_, largest_;  // 2^shift; the largest absolute height of a sample or corner, times that
@@ -124,7 +133,7 @@ class RealGridSamples final : public GridSamples {
   static bool can_hold(double largest) { return largest <= kMostHeight; }
   double most() const override { return kMostHeight; }
 
-  /// Requires: can_hold().
+  /// Requires: can_hold(). May be without cells when cancelled: ask before putting any.
   RealGridSamples(const terrain::SourceGrid& grid, std::vector<Facet::Corner> others,
                   const GridKeeping& keeping);
   void put(const CellSample& sample) { heights_[index(sample.column, sample.row)] = sample.z; }
@@ -136,6 +145,7 @@ class RealGridSamples final : public GridSamples {
   void narrow_cells(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override;
   Scan judge_all(const Site& a, const Site& b, const Site& c, double tolerance) const;
   double height_or_nan(SampleIndex cell) const override;
+  std::size_t bytes_per_cell() const override { return sizeof(double); }
 
   base::Array<double> heights_;  // NaN: no sample
 };

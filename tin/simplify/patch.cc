@@ -49,6 +49,11 @@ void Patch::put(VertexSlot v, const Site& site) {
   flags_[v.value()] = 0;
 }
 
+void Patch::note_vertices() {
+  if (Footprint* const footprint = samples_->footprint()) footprint->add_vertices(not_noted_);
+  not_noted_ = 0;
+}
+
 std::optional<VertexSlot> Patch::insert(const Site& site, TriangleSlot near) {
   if (!carve(site, near)) return std::nullopt;
   return fill(site);
@@ -67,6 +72,7 @@ VertexSlot Patch::fill(const Site& site) {
   const TriangleSlot extra = mesh_.claim_triangle(cavity_.some_triangle());
   cavity_.fill(mesh_, v, extra, mesh_.claim_triangle(extra));
   put(v, site);
+  if (++not_noted_ >= kNotedLate) note_vertices();
   fresh_.assign(cavity_.star().begin(), cavity_.star().end());
   for (const TriangleSlot t : fresh_) {
     const auto& corners = mesh_.triangle(t).vertices;
@@ -94,6 +100,7 @@ bool Patch::has_star(VertexSlot v) const {
 
 bool Patch::remove(VertexSlot v) {
   if (!remover_.remove(mesh_, v, fresh_)) return false;
+  if (--not_noted_ <= -kNotedLate) note_vertices();
   for (const TriangleSlot t : fresh_) {
     for (const VertexSlot corner : mesh_.triangle(t).vertices) unsettle(corner);
   }

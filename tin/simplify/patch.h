@@ -32,6 +32,9 @@ class Patch {
   /// Borrows `samples`. Building uses up to `threads` threads.
   Patch(const Samples& samples, std::span<const Pin> frozen, std::span<const Pin> owned,
         unsigned threads = 1);
+  ~Patch() { note_vertices(); }
+  Patch(const Patch&) = delete;
+  Patch& operator=(const Patch&) = delete;
 
   const Samples& samples() const { return *samples_; }
   const mesh::Mesh& mesh() const { return mesh_; }
@@ -92,8 +95,11 @@ class Patch {
 
  private:
   static constexpr std::uint8_t kFixed = 1, kSettled = 2;
+  static constexpr std::int64_t kNotedLate =
+      64;  // vertices more or fewer that the samples' footprint is told of together
 
   void put(mesh::VertexSlot v, const Site& site);
+  void note_vertices();
 
   const Samples* samples_;
   delaunay::OwnedFrom owner_;
@@ -105,6 +111,7 @@ class Patch {
   std::vector<std::uint8_t> flags_;  // the same
   std::vector<mesh::TriangleSlot> fresh_;
   std::vector<mesh::VertexSlot>* notes_ = nullptr;
+  std::int64_t not_noted_ = 0;
 };
 
 }  // namespace tin::simplify

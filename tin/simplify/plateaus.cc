@@ -15,6 +15,9 @@ using mesh::VertexSlot;
 
 namespace {
 
+constexpr std::size_t kBytesPerLevel =
+    96;  // of a level sample in lists, with its neighbours beside, and in the tree
+
 /// Who is beside whom.
 class Neighbourhood {
  public:
@@ -53,7 +56,10 @@ class Finder {
 
   /// The level samples of all plateaus, ascending.
   std::vector<SampleIndex> find(std::size_t least) {
-    find_level();
+    const std::size_t count = find_level();
+    if (Footprint* const footprint = samples_.footprint();
+        footprint != nullptr && !footprint->take(count * kBytesPerLevel))
+      return {};
     std::vector<SampleIndex> out, plateau;
     for (SampleIndex first = 0; first < samples_.end() && !cancelled(first); ++first) {
       if (!level_[first]) continue;
@@ -83,7 +89,9 @@ class Finder {
     return sample % 4096 == 0 && progress_ != nullptr && progress_->cancelled();
   }
 
-  void find_level() {
+  /// How many there are.
+  std::size_t find_level() {
+    std::size_t count = 0;
     level_.assign(samples_.end(), false);
     for (SampleIndex sample = 0; sample < samples_.end() && !cancelled(sample); ++sample) {
       if (!samples_.exists(sample)) continue;
@@ -93,7 +101,9 @@ class Finder {
       level_[sample] =
           around.size() >= 3 && std::all_of(around.begin(), around.end(),
                                             [&](SampleIndex beside) { return samples_.site(beside).z == z; });
+      if (level_[sample]) ++count;
     }
+    return count;
   }
 
   /// The level samples that hang together with `first`; takes their marks away.

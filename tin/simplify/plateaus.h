@@ -17,7 +17,8 @@ namespace tin::simplify {
 /// corner.)
 ///
 /// Requires: a mesh unless `samples` know neighbours; 1 <= least. What is cancelled is of no worth: ask
-/// before using it.
+/// before using it. Where there is no room for the level samples (the samples' footprint says), they are not
+/// kept.
 std::unique_ptr<Samples> with_plateaus(std::unique_ptr<Samples> samples, const SourceMesh* mesh,
                                        std::size_t least, const base::Progress* progress);
 

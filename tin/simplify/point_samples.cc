@@ -24,8 +24,8 @@ struct PointSamples::Ground {
 };
 
 PointSamples::PointSamples(std::vector<Facet::Corner> samples, SampleIndex first,
-                           const base::Progress* progress)
-    : samples_(std::move(samples)), first_(first), progress_(progress) {
+                           const base::Progress* progress, Footprint* footprint)
+    : samples_(std::move(samples)), first_(first), progress_(progress), footprint_(footprint) {
   if (samples_.empty()) return;
   // Sorted first, so that the tree depends on the set alone.
   std::sort(samples_.begin(), samples_.end(), [](const auto& l, const auto& r) { return l.at < r.at; });

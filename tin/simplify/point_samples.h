@@ -13,8 +13,12 @@ namespace tin::simplify {
 /// eight.
 class PointSamples final : public Samples {
  public:
+  /// Of one sample with its part of the tree, while it is made.
+  static constexpr std::size_t kBytesPerSample = 48;
+
   /// `first` is the index that the samples' own start from. Requires: distinct positions.
-  PointSamples(std::vector<Facet::Corner> samples, SampleIndex first, const base::Progress* progress);
+  PointSamples(std::vector<Facet::Corner> samples, SampleIndex first, const base::Progress* progress,
+               Footprint* footprint = nullptr);
 
   Scan scan(const Site& a, const Site& b, const Site& c, double tolerance, Depth depth) const override;
   void narrow(const Site& a, const Site& b, const Site& c, double tolerance, Heights& heights) const override;
@@ -25,6 +29,7 @@ class PointSamples final : public Samples {
   bool exists(SampleIndex sample) const override { return sample >= first_ && sample < end(); }
   std::optional<SampleIndex> neighbour(SampleIndex, std::int32_t, std::int32_t) const override { return std::nullopt; }
   bool has_neighbours() const override { return false; }
+  Footprint* footprint() const override { return footprint_; }
   Extent extent() const override;
   void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override;
 
@@ -46,6 +51,7 @@ class PointSamples final : public Samples {
   std::vector<Box> boxes_;  // of node i; its children are 2i + 1 and 2i + 2
   SampleIndex first_;
   const base::Progress* progress_;
+  Footprint* footprint_;
 };
 
 }  // namespace tin::simplify

@@ -97,9 +97,13 @@ class Input {
       }
       return true;
     }
+    const base::Pace pace(source_->heights().memory());
+    const std::size_t row_bytes =
+        static_cast<std::size_t>(source_->grid()->width) * source_->heights().bytes_each();
     std::size_t i = 0;
     for (std::int32_t row = 0; row < source_->grid()->height; ++row) {
       if (is_cancelled(progress)) return false;
+      pace.touched(1, row_bytes);
       for (std::int32_t column = 0; column < source_->grid()->width; ++column, ++i) {
         if (source_->is_sample(i)) visit(CellSample{column, row, source_->z(i)});
       }
@@ -155,21 +159,33 @@ bool is_worth_scanning(const SourceGrid& grid, const Survey& found) {
          cells + static_cast<double>(found.others) < 0x1p+32 && std::max(grid.width, grid.height) < kMostCells;
 }
 
-std::vector<Facet::Corner> points_of(const Input& input, bool with_cells, std::size_t count) {
+std::vector<Facet::Corner> points_of(const Input& input, bool with_cells, std::size_t count,
+                                     const base::Progress* progress) {
   std::vector<Facet::Corner> out;
   out.reserve(count);
   input.visit(
-      nullptr,
+      progress,
       [&](const CellSample& cell) {
         if (with_cells) out.push_back({input.grid()->centre(cell.column, cell.row), cell.z});
       },
-      [&](Point p, double z) { out.push_back({p, z}); });
+      [&](Point p, double z) {
+        out.push_back({p, z});
+      });
   return out;
 }
 
 template <class Grid>
-std::unique_ptr<Samples> filled(std::unique_ptr<Grid> grid, const Input& input, const base::Progress* progress) {
-  const bool finished = input.visit(progress, [&](const CellSample& cell) { grid->put(cell); }, [](Point, double) {});
+std::unique_ptr<Samples> filled(std::unique_ptr<Grid> grid, const Input& input, const GridKeeping& keeping) {
+  if (is_cancelled(keeping.progress))
+    return nullptr;  // while it was made; what comes after that asks no more of it
+  const base::Pace pace(keeping.memory);
+  std::int32_t row = -1;
+  const auto put = [&](const CellSample& cell) {
+    if (cell.row != row) pace.touched(1, static_cast<std::size_t>(input.grid()->width) * sizeof(double));
+    row = cell.row;
+    grid->put(cell);
+  };
+  const bool finished = input.visit(keeping.progress, put, [](Point, double) {});
   return finished ? std::move(grid) : nullptr;
 }
 
@@ -210,43 +226,63 @@ std::vector<SampleIndex> hull_corners(const Samples& samples, const terrain::Box
 
 namespace {
 
+bool take(const Demands& demands, std::size_t bytes) {
+  return demands.footprint == nullptr || demands.footprint->take(bytes);
+}
+
 std::unique_ptr<Samples> plain_samples(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own,
                                        const Demands& demands, base::Progress* progress) {
   const Input input(terrain, source, own);
   const auto found = survey(input, progress);
   if (!found) return nullptr;
   const SourceGrid* const grid = input.grid();
+  if (!take(demands, found->others * PointSamples::kBytesPerSample)) return nullptr;
   if (grid != nullptr && is_worth_scanning(*grid, *found)) {
-    auto others = found->others == 0 ? std::vector<Facet::Corner>() : points_of(input, false, found->others);
-    const GridKeeping keeping{demands.memory, progress};
+    auto others =
+        found->others == 0 ? std::vector<Facet::Corner>() : points_of(input, false, found->others, progress);
+    const GridKeeping keeping{demands.memory, progress, demands.footprint};
     const int shift = demands.any_height ? std::max(found->shift, fine_shift(found->largest)) : found->shift;
     const double largest = demands.any_height ? 2 * found->largest : found->largest;
     if (WholeGridSamples::can_hold(*grid, shift, largest)) {
-      return filled(std::make_unique<WholeGridSamples>(*grid, shift, largest, demands.any_height, std::move(others), keeping), input,
-                    progress);
+      return filled(std::make_unique<WholeGridSamples>(*grid, shift, largest, demands.any_height,
+                                                       std::move(others), keeping),
+                    input, keeping);
     }
     if (RealGridSamples::can_hold(found->largest)) {
-      return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), keeping), input, progress);
+      return filled(std::make_unique<RealGridSamples>(*grid, std::move(others), keeping), input, keeping);
     }
   }
-  auto points = std::make_unique<PointSamples>(points_of(input, true, found->on_cells + found->others), 0, progress);
+  if (!take(demands, found->on_cells * PointSamples::kBytesPerSample)) return nullptr;
+  auto points = std::make_unique<PointSamples>(
+      points_of(input, true, found->on_cells + found->others, progress), 0, progress, demands.footprint);
   if (is_cancelled(progress)) return nullptr;
   return points;
 }
 
-}  // namespace
-
-std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source, std::span<const Placement> own,
-                                      const Demands& demands, base::Progress* progress) {
-  auto samples = plain_samples(terrain, source, own, demands, progress);
-  if (samples == nullptr || (demands.keep_flat == 0 && !demands.surface)) return samples;
+std::unique_ptr<Samples> demanding_samples(std::unique_ptr<Samples> samples, const Demands& demands,
+                                           base::Progress* progress) {
   if (hull_corners(*samples, samples->extent().box).size() < 3) return samples;  // all in a line: all of them stay
   std::shared_ptr<const SourceMesh> mesh;
-  if (demands.surface || !samples->has_neighbours()) mesh = std::make_shared<const SourceMesh>(*samples, demands.threads);
+  if (demands.surface || !samples->has_neighbours()) {
+    if (!take(demands, samples->extent().samples * SourceMesh::kBytesPerSample)) return nullptr;
+    mesh = SourceMesh::of(*samples, demands.threads, progress);
+  }
   if (is_cancelled(progress)) return nullptr;
   if (demands.keep_flat > 0) samples = with_plateaus(std::move(samples), mesh.get(), demands.keep_flat, progress);
   if (demands.surface) samples = with_surface(std::move(samples), mesh);
-  return is_cancelled(progress) ? nullptr : std::move(samples);
+  return samples;
+}
+
+}  // namespace
+
+std::unique_ptr<Samples> make_samples(const Terrain* terrain, const SourceSamples* source,
+                                      std::span<const Placement> own, const Demands& demands,
+                                      base::Progress* progress) {
+  auto samples = plain_samples(terrain, source, own, demands, progress);
+  if (samples != nullptr && (demands.keep_flat > 0 || demands.surface))
+    samples = demanding_samples(std::move(samples), demands, progress);
+  const bool is_over = demands.footprint != nullptr && demands.footprint->is_over();
+  return is_cancelled(progress) || is_over ? nullptr : std::move(samples);
 }
 
 }  // namespace tin::simplify

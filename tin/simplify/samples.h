@@ -12,6 +12,7 @@
 
 #include "tin/base/progress.h"
 #include "tin/exact/point.h"
+#include "tin/simplify/footprint.h"
 #include "tin/terrain/source_samples.h"
 #include "tin/terrain/terrain.h"
 
@@ -110,6 +111,9 @@ class Samples {
   /// Whether neighbour() knows any: on a raster with nothing beside it.
   virtual bool has_neighbours() const = 0;
 
+  /// What notes the memory that work on them takes; null: nobody does.
+  virtual Footprint* footprint() const { return nullptr; }
+
   virtual Extent extent() const = 0;
   /// Appends samples of the closed box, among them all corners of their convex hull.
   virtual void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const = 0;
@@ -129,11 +133,13 @@ struct Demands {
   unsigned threads = 1;
   /// For what is as large as the raster.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  /// Notes all else that is large; null: nobody does.
+  Footprint* footprint = nullptr;
 };
 
-/// The samples of `source`, those that are people's `own`, and the vertices of `terrain` where neither has a sample. `terrain` or
-/// `source` may be null, not both. On the raster where most of them are, else as scattered points. Nothing when cancelled.
-/// Borrows all. Requires: as simplify().
+/// The samples of `source`, those that are people's `own`, and the vertices of `terrain` where neither has a
+/// sample. `terrain` or `source` may be null, not both. On the raster where most of them are, else as
+/// scattered points. Nothing when cancelled or when there is no room. Borrows all. Requires: as simplify().
 std::unique_ptr<Samples> make_samples(const terrain::Terrain* terrain, const terrain::SourceSamples* source,
                                       std::span<const terrain::Placement> own, const Demands& demands, base::Progress* progress);
 

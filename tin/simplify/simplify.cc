@@ -36,9 +36,20 @@ Result<void> check(const Options& options) {
   return {};
 }
 
-Demands demands_of(const Options& options) {
-  return {options.elevations == Elevations::kFit, options.keep_flat, options.against == Against::kSurface, options.threads,
-          options.memory};
+Demands demands_of(const Options& options, Footprint& footprint) {
+  return {options.elevations == Elevations::kFit,
+          options.keep_flat,
+          options.against == Against::kSurface,
+          options.threads,
+          options.memory,
+          &footprint};
+}
+
+/// Why there is no result.
+base::Error stopped(const Footprint& footprint) {
+  if (!footprint.is_over()) return error(Code::kCancelled, "Cancelled.");
+  return error(Code::kTooLarge, "The simplification takes more memory than there is room for: " +
+                                    std::to_string((footprint.bytes() >> 20) + 1) + " MB and more.");
 }
 
 Result<void> check_budget(const Options& options, std::size_t needed) {
@@ -88,7 +99,8 @@ std::vector<SampleIndex> with_protected(const Samples& samples, std::vector<Samp
   return corners;
 }
 
-Result<Choice> choose(const Samples& samples, const SourceSamples* source, const Options& options, const Phase& whole) {
+Result<Choice> choose(const Samples& samples, const SourceSamples* source, const Options& options,
+                      const Footprint& footprint, const Phase& whole) {
   const auto corners = hull_corners(samples, samples.extent().box);
   if (corners.size() < 3) {  // all in a line, or nearly none
     Choice out{all_samples(samples), {}};
@@ -100,11 +112,11 @@ Result<Choice> choose(const Samples& samples, const SourceSamples* source, const
   const auto fixed = with_protected(samples, corners, options);
   if (auto fine = check_budget(options, fixed.size()); !fine) return fine.error();
   auto reduced = reduce(samples, fixed, options, whole.part(0, 0.9));
-  if (!reduced) return error(Code::kCancelled, "Cancelled.");
+  if (!reduced) return stopped(footprint);
   const double asked = options.tolerance.value_or(std::numeric_limits<double>::max());
   const double bin = (reduced->to_tolerance ? asked : reduced->error) / kBins;
   const auto certificate = certify(*reduced->tin, asked, bin, options.threads, whole.part(0.9, 1));
-  if (!certificate) return error(Code::kCancelled, "Cancelled.");
+  if (!certificate) return stopped(footprint);
   TIN_CHECK(certificate->within || !reduced->to_tolerance);
   Choice out;
   reduced->tin->collect(out.pins);
@@ -156,20 +168,22 @@ Outcome difference(const Terrain& terrain, const Samples& samples, Choice choice
 Result<Outcome> simplify(const Terrain& terrain, const SourceSamples* source, std::span<const Placement> own,
                          const Options& options, base::Progress* progress) {
   if (auto fine = check(options); !fine) return fine.error();
-  const Phase whole(progress, 0, 1);
-  const auto samples = make_samples(&terrain, source, own, demands_of(options), progress);
-  if (!samples) return error(Code::kCancelled, "Cancelled.");
-  auto choice = choose(*samples, source, options, whole.part(0.05, 1));
+  Footprint footprint(options.room);
+  const Phase whole = Phase(progress, 0, 1).until(footprint.is_over());
+  const auto samples = make_samples(&terrain, source, own, demands_of(options, footprint), progress);
+  if (!samples) return stopped(footprint);
+  auto choice = choose(*samples, source, options, footprint, whole.part(0.05, 1));
   if (!choice) return choice.error();
   return difference(terrain, *samples, std::move(*choice));
 }
 
 Result<Chosen> simplify_samples(const SourceSamples& source, const Options& options, base::Progress* progress) {
   if (auto fine = check(options); !fine) return fine.error();
-  const Phase whole(progress, 0, 1);
-  const auto samples = make_samples(nullptr, &source, {}, demands_of(options), progress);
-  if (!samples) return error(Code::kCancelled, "Cancelled.");
-  auto choice = choose(*samples, &source, options, whole.part(0.05, 1));
+  Footprint footprint(options.room);
+  const Phase whole = Phase(progress, 0, 1).until(footprint.is_over());
+  const auto samples = make_samples(nullptr, &source, {}, demands_of(options, footprint), progress);
+  if (!samples) return stopped(footprint);
+  auto choice = choose(*samples, &source, options, footprint, whole.part(0.05, 1));
   if (!choice) return choice.error();
   Chosen out{{}, choice->report};
   out.report.vertices_before = out.report.samples;

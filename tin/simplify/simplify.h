@@ -67,6 +67,10 @@ struct Options {
   /// For the one array that is as large as the raster: 4 bytes a cell where heights are whole multiples of 2^-16, else 8. It is filled
   /// row by row and then read where the work is. All else, but for keep_flat and Against::kSurface, grows with the result.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  /// Asked, by one thread at a time, before all else takes more: whether there is room for so many bytes
+  /// together. An estimate that errs upwards: of the TIN that is worked on, of samples that are no raster's,
+  /// of plateaus, of the samples' triangulation. Empty: there always is.
+  std::function<bool(std::size_t bytes)> room;
 };
 
 /// The sample that is furthest from the result, or a place between two of them.
@@ -111,15 +115,16 @@ struct Outcome {
   Report report;
 };
 
-/// Chooses the vertices that `terrain` should have. The samples are those of the `source` (null: none), people's `own`
-/// beside them, and the vertices that stand where neither has a sample: somebody's edits, or all there is. The result is
-/// the canonical Delaunay triangulation of some of the samples. What is in force of a source after edits, and which
-/// samples are people's own, terrain::Amendments knows.
+/// Chooses the vertices that `terrain` should have. The samples are those of the `source` (null: none),
+/// people's `own` beside them, and the vertices that stand where neither has a sample: somebody's edits, or
+/// all there is. The result is the canonical Delaunay triangulation of some of the samples. What is in force
+/// of a source after edits, and which samples are people's own, terrain::Amendments knows.
 ///
 /// Requires: `own` ascends by position and shares none with the source; the terrain covers all samples.
 ///
-/// Voids: a cell without a sample binds nothing. Triangles pass over voids, and over bays of the hull, so that the TIN stays
-/// one Delaunay triangulation; what they say there is no terrain, and exports leave it out by the source grid's mask.
+/// Voids: a cell without a sample binds nothing. Triangles pass over voids, and over bays of the hull, so
+/// that the TIN stays one Delaunay triangulation; what they say there is no terrain, and exports leave it out
+/// by the source grid's mask.
 ///
 /// `tolerance`: every sample ends up within it, compared as <= on the exact values of the doubles: the
 /// heights, the tolerance, and the interpolated height as a fraction. `max_vertices` alone: the smallest
@@ -130,7 +135,7 @@ struct Outcome {
 ///
 /// Units:    vertical ones of terrain.frame(); positions on its lattice.
 /// Errors:   kInvalidValue (no option, tolerance negative or not finite, max_vertices below what the hull
-///           and what is protected need: the message says how many), kCancelled.
+///           and what is protected need: the message says how many), kTooLarge (no room), kCancelled.
 /// Ensures:  the same samples, options and seed give the same result for any number of threads, whatever the
 ///           terrain's history; unless out_of_time said true (rmse up to rounding).
 /// Cost:     O(n log n) expected, times what the effort says.

@@ -1,5 +1,7 @@
 #include "tin/simplify/source_mesh.h"
 
+#include <algorithm>
+
 #include "tin/base/check.h"
 #include "tin/delaunay/bulk.h"
 #include "tin/delaunay/hilbert_sort.h"
@@ -10,24 +12,50 @@ using exact::Point;
 using mesh::TriangleSlot;
 using mesh::VertexSlot;
 
-SourceMesh::SourceMesh(const Samples& samples, unsigned threads) : slots_(samples.end(), mesh::kNone) {
+namespace {
+
+constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // samples between two questions whether to go on
+
+}  // namespace
+
+std::shared_ptr<const SourceMesh> SourceMesh::of(const Samples& samples, unsigned threads,
+                                                 const base::Progress* progress) {
+  const std::shared_ptr<SourceMesh> made(new SourceMesh);
+  return made->build(samples, threads, progress) ? made : nullptr;
+}
+
+/// False when cancelled.
+bool SourceMesh::build(const Samples& samples, unsigned threads, const base::Progress* progress) {
+  base::Progress silent(progress);
+  slots_.assign(samples.end(), mesh::kNone);
   std::vector<Site> sites;
-  samples.sites(0, samples.end(), sites);
+  const std::size_t end = samples.end();
+  for (std::size_t begin = 0; begin < end && !silent.cancelled(); begin += kAtOnce) {
+    samples.sites(static_cast<SampleIndex>(begin), static_cast<SampleIndex>(std::min(end, begin + kAtOnce)),
+                  sites);
+  }
+  if (silent.cancelled()) return false;
   std::vector<Point> points;
   points.reserve(sites.size());
   for (const Site& site : sites) points.push_back(site.at);
+  const auto along_curve = delaunay::hilbert_sorted(points, threads);
+  if (silent.cancelled()) return false;
   z_.resize(sites.size() + 1);
   samples_of_.resize(sites.size() + 1);
   mesh_.begin_bulk(sites.size());
   std::uint32_t slot = 0;
-  for (const delaunay::OnCurve& next : delaunay::hilbert_sorted(points, threads)) {
+  for (const delaunay::OnCurve& next : along_curve) {
     mesh_.set_point(VertexSlot(++slot), points[next.index]);
     z_[slot] = sites[next.index].z;
     samples_of_[slot] = sites[next.index].sample;
     slots_[samples_of_[slot]] = slot;
+    if (slot % kAtOnce == 0 && silent.cancelled()) return false;
   }
-  TIN_CHECK(delaunay::build_bulk(mesh_, threads, nullptr));
+  std::vector<Site>().swap(sites);
+  std::vector<Point>().swap(points);
+  if (!delaunay::build_bulk(mesh_, threads, &silent)) return false;
   TIN_CHECK(mesh_.dimension() == 2);
+  return true;
 }
 
 SourceMesh::Exit SourceMesh::leave(VertexSlot from, Point a, Point b) const {

@@ -2,20 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "tin/base/progress.h"
 #include "tin/mesh/mesh.h"
 #include "tin/simplify/facet.h"
 #include "tin/simplify/samples.h"
 
 namespace tin::simplify {
 
-/// Canonical, as every TIN is; over voids, too. About 50 bytes per sample.
+/// Canonical, as every TIN is; over voids, too. About 80 bytes per sample.
 class SourceMesh {
  public:
-  /// Requires: at least three samples that are not collinear. Borrows `samples`.
-  SourceMesh(const Samples& samples, unsigned threads);
+  /// While it is made.
+  static constexpr std::size_t kBytesPerSample = 144;
+
+  /// Null when `progress`, which may be null and is not reported to, was cancelled. Requires: at least three
+  /// samples that are not collinear.
+  static std::shared_ptr<const SourceMesh> of(const Samples& samples, unsigned threads,
+                                              const base::Progress* progress);
 
   const mesh::Mesh& mesh() const { return mesh_; }
   SampleIndex sample(mesh::VertexSlot v) const { return samples_of_[v.value()]; }
@@ -51,6 +58,8 @@ class SourceMesh {
     std::optional<mesh::VertexSlot> next;
     mesh::HalfEdge over;  // seen from beyond
   };
+  SourceMesh() = default;
+  bool build(const Samples& samples, unsigned threads, const base::Progress* progress);
   Exit leave(mesh::VertexSlot from, exact::Point a, exact::Point b) const;
 
   mesh::Mesh mesh_;

@@ -42,6 +42,7 @@ class WrappedSamples : public Samples {
     return inner_->neighbour(sample, columns, rows);
   }
   bool has_neighbours() const override { return inner_->has_neighbours(); }
+  Footprint* footprint() const override { return inner_->footprint(); }
   Extent extent() const override { return inner_->extent(); }
   void outermost(const terrain::Box& box, std::vector<SampleIndex>& out) const override {
     inner_->outermost(box, out);

@@ -33,13 +33,17 @@ bool to_stored(double z, int shift, T& out) {
          std::bit_cast<std::uint64_t>(z);
 }
 
+constexpr std::size_t kAtOnce = base::kPaceBytes / sizeof(double);  // heights between two words about them
+
 /// All values in another form; false, and nothing of worth in `to`, when one has none.
 template <class From, class To>
 bool convert(const base::Array<From>& from, int from_shift, base::Array<To>& to, int to_shift) {
-  for (const From value : from) {
+  const base::Pace pace(to.get_allocator().memory());
+  for (std::size_t i = 0; i < from.size(); ++i) {
     To stored{};
-    if (!to_stored(std::ldexp(static_cast<double>(value), -from_shift), to_shift, stored)) return false;
+    if (!to_stored(std::ldexp(static_cast<double>(from[i]), -from_shift), to_shift, stored)) return false;
     to.push_back(stored);
+    if (to.size() % kAtOnce == 0) pace.touched(2, kAtOnce * sizeof(To));
   }
   return true;
 }
@@ -47,7 +51,7 @@ bool convert(const base::Array<From>& from, int from_shift, base::Array<To>& to,
 }  // namespace
 
 HeightsBuilder::HeightsBuilder(std::size_t expected, std::pmr::memory_resource* memory)
-    : expected_(expected), memory_(memory) {
+    : expected_(expected), memory_(memory), pace_(memory) {
   base::Array<std::int16_t> narrow(memory_);
   narrow.reserve(expected);
   heights_.stored = std::move(narrow);
@@ -90,10 +94,18 @@ void HeightsBuilder::widen() {
 
 void HeightsBuilder::add(double z) {
   while (!try_add(z)) widen();
+  note_one();
 }
 
 void HeightsBuilder::skip() {
   std::visit([](auto& values) { values.emplace_back(); }, heights_.stored);
+  note_one();
+}
+
+void HeightsBuilder::note_one() {
+  if (++since_noted_ < kAtOnce) return;
+  pace_.touched(1, since_noted_ * sizeof(double));
+  since_noted_ = 0;
 }
 
 }  // namespace tin::terrain

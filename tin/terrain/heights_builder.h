@@ -29,9 +29,12 @@ class HeightsBuilder {
  private:
   bool try_add(double z);
   void widen();
+  void note_one();
 
   std::size_t expected_;
   std::pmr::memory_resource* memory_;
+  base::Pace pace_;
+  std::size_t since_noted_ = 0;
   SourceSamples::Heights heights_;
 };
 

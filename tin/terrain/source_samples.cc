@@ -63,6 +63,14 @@ std::size_t SourceSamples::Heights::size() const {
   return std::visit([](const auto& values) { return values.size(); }, stored);
 }
 
+std::pmr::memory_resource* SourceSamples::Heights::memory() const {
+  return std::visit([](const auto& values) { return values.get_allocator().memory(); }, stored);
+}
+
+std::size_t SourceSamples::Heights::bytes_each() const {
+  return std::visit([](const auto& values) { return sizeof(values[0]); }, stored);
+}
+
 SourceSamples SourceSamples::raster(std::shared_ptr<const SourceGrid> grid, std::span<const double> heights) {
   std::vector<std::uint64_t> valid((heights.size() + 63) / 64, 0);
   for (std::size_t i = 0; i < heights.size(); ++i) {

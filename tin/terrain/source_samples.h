@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <variant>
@@ -34,6 +35,8 @@ class SourceSamples {
 
     double at(std::size_t i) const;
     std::size_t size() const;
+    std::pmr::memory_resource* memory() const;
+    std::size_t bytes_each() const;
   };
 
   /// Requires: heights.size() == width * height, below 2^32; each finite, or NaN where there is no sample. Cells that the

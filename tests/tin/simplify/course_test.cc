@@ -11,6 +11,8 @@
 #include "tests/tin/simplify/runs.h"
 #include "tests/tin/simplify/terrains.h"
 #include "tin/mesh/validate.h"
+#include "tin/simplify/source_mesh.h"
+#include "tin/simplify/wrapped_samples.h"
 
 namespace {
 
@@ -189,6 +191,46 @@ TEST_F(SimplifyTest, ACancelledSimplificationEndsWithinASecond) {
     }
   }
   EXPECT_GT(stopped, 4);
+}
+
+/// Asks to stop as soon as its sites are read.
+class CancellingSamples : public tin::simplify::WrappedSamples {
+ public:
+  CancellingSamples(std::unique_ptr<tin::simplify::Samples> samples, Progress& progress)
+      : WrappedSamples(std::move(samples)), progress_(progress) {}
+  void sites(tin::simplify::SampleIndex begin, tin::simplify::SampleIndex end,
+             std::vector<tin::simplify::Site>& out) const override {
+    WrappedSamples::sites(begin, end, out);
+    progress_.cancel();
+  }
+
+ private:
+  Progress& progress_;
+};
+
+TEST_F(SimplifyTest, TheTriangulationOfTheSamplesCanBeCancelledAndReportsNothing) {
+  const Terrain source = support::raster_terrain(
+      heights(60, 60, [](auto c, auto r) { return std::optional(double(c * r % 7)); }));
+  const auto samples = [&] { return tin::simplify::make_samples(&source, nullptr, {}, {}, nullptr); };
+  Progress progress;
+  EXPECT_NE(tin::simplify::SourceMesh::of(*samples(), 2, &progress), nullptr);
+  EXPECT_EQ(progress.fraction(), 0);
+  EXPECT_EQ(tin::simplify::SourceMesh::of(CancellingSamples(samples(), progress), 2, &progress), nullptr);
+  EXPECT_EQ(tin::simplify::SourceMesh::of(*samples(), 2, &progress), nullptr) << "cancelled before";
+  EXPECT_NE(tin::simplify::SourceMesh::of(*samples(), 2, nullptr), nullptr);
+}
+
+TEST(Progress, APartThatReportsToNobodyIsCancelledWithTheWhole) {
+  Progress whole, part(&whole);
+  part.report(0.5);
+  EXPECT_EQ(whole.fraction(), 0);
+  EXPECT_FALSE(part.cancelled());
+  whole.cancel();
+  EXPECT_TRUE(part.cancelled());
+  Progress alone(nullptr);
+  EXPECT_FALSE(alone.cancelled());
+  alone.cancel();
+  EXPECT_TRUE(alone.cancelled());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Where a raster's heights lie is the caller's to say, and changes nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory_resource>
@@ -74,6 +75,72 @@ TEST_F(SimplifyTest, TheOneArrayOfARastersSizeIsWhereItIsWanted) {
       EXPECT_LE(memory.taken, heights + 64);
     }
   }
+}
+
+/// Where there is enough the result is the same; where there is not it is refused, whatever takes it.
+TEST_F(SimplifyTest, ThereIsRoomOrItSaysThatThereIsNone) {
+  const SourceSamples raster = waves(300, 10);
+  std::vector<tin::terrain::Placement> some;
+  for (std::size_t i = 0; i < raster.size(); i += 3) {
+    if (raster.is_sample(i)) some.push_back({raster.at(i), raster.z(i)});
+  }
+  const SourceSamples points = SourceSamples::points(some);
+  const auto ask = [](double tolerance, std::size_t flat, tin::simplify::Against against) {
+    Options options = support::to(tolerance, tin::simplify::Effort::kFast);
+    options.keep_flat = flat;
+    options.against = against;
+    options.threads = 2;
+    return options;
+  };
+  using tin::simplify::Against;
+  for (const auto& [source, options] :
+       {std::pair(&raster, ask(1, 0, Against::kSamples)), std::pair(&raster, ask(40, 5, Against::kSamples)),
+        std::pair(&raster, ask(40, 0, Against::kSurface)),
+        std::pair(&points, ask(40, 0, Against::kSamples))}) {
+    std::size_t most = 0;
+    Options asking = options;
+    asking.room = [&most](std::size_t bytes) {
+      most = std::max(most, bytes);
+      return true;
+    };
+    const auto free = tin::simplify::simplify_samples(*source, asking, nullptr);
+    ASSERT_TRUE(free.ok());
+    ASSERT_GT(most, 1'000'000U) << "nothing was asked for";
+    const auto within = [&](std::size_t limit) {
+      Options bounded = options;
+      bounded.threads = 1;
+      bounded.room = [limit](std::size_t bytes) { return bytes <= limit; };
+      return tin::simplify::simplify_samples(*source, bounded, nullptr);
+    };
+    const auto enough = within(2 * most);
+    ASSERT_TRUE(enough.ok());
+    EXPECT_EQ(enough->vertices, free->vertices);
+    const auto refused = within(most / 2);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, tin::base::Code::kTooLarge);
+  }
+}
+
+TEST(Footprint, AsksBeforeItIsOverAndIsOverForGood) {
+  std::vector<std::size_t> asked;
+  tin::simplify::Footprint footprint([&asked](std::size_t bytes) {
+    asked.push_back(bytes);
+    return bytes <= (std::size_t{3} << 20);
+  });
+  EXPECT_TRUE(footprint.take(1));
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_TRUE(footprint.take(asked[0] - 1)) << "granted already";
+  EXPECT_EQ(asked.size(), 1U);
+  EXPECT_TRUE(footprint.take(1));
+  footprint.add_vertices(-1);
+  EXPECT_FALSE(footprint.is_over());
+  EXPECT_FALSE(footprint.take(std::size_t{2} << 20));
+  EXPECT_TRUE(footprint.is_over());
+  footprint.add_vertices(-4000);
+  EXPECT_FALSE(footprint.take(1));
+  EXPECT_TRUE(footprint.is_over());
+  EXPECT_EQ(asked.size(), 3U);
+  EXPECT_TRUE(tin::simplify::Footprint({}).take(std::size_t{1} << 40));
 }
 
 TEST(HeightsBuilder, NarrowHeightsKeepTheirMemoryWhenTheyAreAssigned) {
