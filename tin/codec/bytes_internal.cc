@@ -1,5 +1,6 @@
 #include "tin/codec/bytes_internal.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -11,6 +12,17 @@ namespace {
 
 constexpr std::size_t kChecksumBytes = 4;
 constexpr std::size_t kVersionBytes = 2;
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+
+std::uint32_t checksum_of(std::string_view bytes, const base::Pace& pace) {
+  std::uint32_t crc = 0;
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), kPieceBytes))) {
+    const std::string_view piece = bytes.substr(0, kPieceBytes);
+    crc = crc32c(piece, crc);
+    pace.touched(1, piece.size());
+  }
+  return crc;
+}
 
 }  // namespace
 
@@ -57,13 +69,21 @@ void Writer::placement(const terrain::Placement& placement) {
   f64(placement.z);
 }
 
+base::Result<void> Writer::flush(const Sink& sink) {
+  if (bytes_.size() < kPieceBytes) return {};
+  crc_ = crc32c(bytes_, crc_);
+  auto taken = sink(bytes_);
+  bytes_.clear();
+  return taken;
+}
+
 std::string Writer::finish() {
-  fixed(crc32c(bytes_), kChecksumBytes);
+  fixed(crc32c(bytes_, crc_), kChecksumBytes);
   return std::move(bytes_);
 }
 
 Reader::Reader(std::string_view bytes, std::string_view magic, std::uint16_t newest_version,
-               std::string_view what)
+               std::string_view what, const base::Pace& pace)
     : bytes_(bytes), what_(what) {
   require(bytes.starts_with(magic), "does not start as one");
   if (!ok()) return;
@@ -80,7 +100,7 @@ Reader::Reader(std::string_view bytes, std::string_view magic, std::uint16_t new
   const std::string_view body = bytes_.substr(0, bytes_.size() - kChecksumBytes);
   bytes_.remove_prefix(body.size());
   const std::uint64_t checksum = fixed(kChecksumBytes);
-  require(checksum == crc32c(summed), "the checksum does not match");
+  require(checksum == checksum_of(summed, pace), "the checksum does not match");
   if (ok()) bytes_ = body;
 }
 

@@ -5,7 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "tin/base/array.h"
 #include "tin/base/result.h"
+#include "tin/codec/sink.h"
 #include "tin/exact/point.h"
 #include "tin/terrain/edit.h"
 
@@ -14,7 +16,7 @@ namespace tin::codec {
 /// A position on the lattice with a finite z: the only kind that is written and the only kind that is read.
 bool storable(const terrain::Placement& placement);
 
-/// Appends primitives to a string.
+/// Appends primitives to a string, of which pieces may go to a sink before the rest is there.
 class Writer {
  public:
   /// Starts with magic and version.
@@ -30,13 +32,16 @@ class Writer {
   void at(exact::Point value);
   /// `at` and z. Requires: storable(placement).
   void placement(const terrain::Placement& placement);
-  /// Appends the checksum and hands the string out.
+  /// Hands out what is there, if that is much; for long work, between its items.
+  base::Result<void> flush(const Sink& sink);
+  /// Appends the checksum and hands the rest out.
   std::string finish();
 
  private:
   void fixed(std::uint64_t value, int bytes);
 
   std::string bytes_;
+  std::uint32_t crc_ = 0;  // of what was handed out
   exact::Point previous_;
 };
 
@@ -44,8 +49,9 @@ class Writer {
 /// that callers may read on and ask ok() where a loop or an allocation depends on it.
 class Reader {
  public:
-  /// Checks magic, version and checksum of `bytes`, which must outlive the reader.
-  Reader(std::string_view bytes, std::string_view magic, std::uint16_t newest_version, std::string_view what);
+  /// Checks magic, version and checksum of `bytes`, which must outlive the reader; `pace` is of their memory.
+  Reader(std::string_view bytes, std::string_view magic, std::uint16_t newest_version, std::string_view what,
+         const base::Pace& pace = {});
 
   bool ok() const { return failure_.message.empty(); }
   /// The version that the bytes are of.

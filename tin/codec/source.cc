@@ -84,10 +84,19 @@ bool is_sample(const SourceGrid* grid, std::size_t i) {
   return grid == nullptr || grid->valid.empty() || ((grid->valid[i / 64] >> (i % 64)) & 1U) != 0;
 }
 
+constexpr std::size_t kAtOnce = std::size_t{1}
+                                << 16;  // heights or positions between two looks at how many bytes there are
+
 template <class T>
-void write_heights(Writer& out, const base::Array<T>& values, const SourceGrid* grid) {
+base::Result<void> write_heights(Writer& out, const base::Array<T>& values, const SourceGrid* grid,
+                                 const Sink& sink) {
+  const base::Pace pace(values.get_allocator().memory());
   Forecast forecast(values, grid);
   for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i % kAtOnce == 0) {
+      pace.touched(1, kAtOnce * sizeof(T));
+      if (auto flushed = out.flush(sink); !flushed) return flushed;
+    }
     if (!is_sample(grid, i)) continue;
     if constexpr (std::is_same_v<T, double>) {
       out.f64(values[i]);
@@ -97,13 +106,17 @@ void write_heights(Writer& out, const base::Array<T>& values, const SourceGrid* 
       forecast.note(rank);
     }
   }
+  return {};
 }
 
 template <class T>
-base::Array<T> read_heights(Reader& in, std::size_t count, const SourceGrid* grid) {
-  base::Array<T> values(count);
+base::Array<T> read_heights(Reader& in, std::size_t count, const SourceGrid* grid,
+                            std::pmr::memory_resource* memory) {
+  const base::Pace pace(memory);
+  base::Array<T> values = base::filled(count, T{}, memory);
   Forecast forecast(values, grid);
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    if (i % kAtOnce == 0) pace.touched(2, kAtOnce * sizeof(double));  // the bytes and the heights
     if (!is_sample(grid, i)) continue;
     if constexpr (std::is_same_v<T, double>) {
       values[i] = in.f64();
@@ -123,14 +136,18 @@ base::Array<T> read_heights(Reader& in, std::size_t count, const SourceGrid* gri
   return values;
 }
 
-void write_positions(Writer& out, std::span<const Point> points) {
+base::Result<void> write_positions(Writer& out, std::span<const Point> points, const Sink& sink) {
   out.varint(points.size());
   Point previous{-exact::kLatticeHalf, 0};
-  for (const Point p : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point p = points[i];
     out.varint(static_cast<std::uint64_t>(std::int64_t{p.x} - previous.x));
     out.zigzag(std::int64_t{p.y} - previous.y);
     previous = p;
+    if (i % kAtOnce != 0) continue;
+    if (auto flushed = out.flush(sink); !flushed) return flushed;
   }
+  return {};
 }
 
 std::vector<Point> read_positions(Reader& in) {
@@ -155,7 +172,7 @@ std::vector<Point> read_positions(Reader& in) {
   return points;
 }
 
-Heights read_form(Reader& in, std::size_t count, const SourceGrid* grid) {
+Heights read_form(Reader& in, std::size_t count, const SourceGrid* grid, std::pmr::memory_resource* memory) {
   const std::uint8_t form = in.u8();
   const std::uint64_t shift = in.varint();
   in.require(form < kForms, "an unknown form of heights");
@@ -164,60 +181,73 @@ Heights read_form(Reader& in, std::size_t count, const SourceGrid* grid) {
   const auto with = [&](auto values) { return Heights{std::move(values), static_cast<int>(shift)}; };
   switch (form) {
     case 0:
-      return with(read_heights<std::int16_t>(in, count, grid));
+      return with(read_heights<std::int16_t>(in, count, grid, memory));
     case 1:
-      return with(read_heights<std::int32_t>(in, count, grid));
+      return with(read_heights<std::int32_t>(in, count, grid, memory));
     case 2:
-      return with(read_heights<float>(in, count, grid));
+      return with(read_heights<float>(in, count, grid, memory));
     default:
-      return with(read_heights<double>(in, count, grid));
+      return with(read_heights<double>(in, count, grid, memory));
   }
 }
 
-SourceSamples read_raster(Reader& in, std::shared_ptr<const SourceGrid> grid) {
+SourceSamples read_raster(Reader& in, std::shared_ptr<const SourceGrid> grid,
+                          std::pmr::memory_resource* memory) {
   const std::uint64_t width = in.varint(), height = in.varint();
   in.require(std::cmp_equal(width, grid->width) && std::cmp_equal(height, grid->height),
              "the raster is not of the grid's size");
   if (!in.ok()) return SourceSamples::points({});
-  Heights heights = read_form(in, static_cast<std::size_t>(width * height), grid.get());
+  Heights heights = read_form(in, static_cast<std::size_t>(width * height), grid.get(), memory);
   if (!in.ok()) return SourceSamples::points({});
   std::vector<std::uint64_t> valid = grid->valid;
   return SourceSamples::restored_raster(std::move(grid), std::move(heights), std::move(valid));
 }
 
-SourceSamples read_points(Reader& in) {
+SourceSamples read_points(Reader& in, std::pmr::memory_resource* memory) {
   std::vector<Point> positions = read_positions(in);
-  Heights heights = read_form(in, positions.size(), nullptr);
+  Heights heights = read_form(in, positions.size(), nullptr, memory);
   if (!in.ok()) return SourceSamples::points({});
   return SourceSamples::restored_points(std::move(positions), std::move(heights));
 }
 
 }  // namespace
 
-std::string encode_source(const SourceSamples& source) {
+base::Result<void> encode_source(const SourceSamples& source, const Sink& sink) {
   Writer out(kMagic, kVersion);
   const SourceGrid* const grid = source.grid().get();
-  out.reserve(64 + 2 * source.sample_count());
   out.u8(source.is_raster() ? kRaster : kPoints);
   if (grid != nullptr) {
     out.varint(static_cast<std::uint64_t>(grid->width));
     out.varint(static_cast<std::uint64_t>(grid->height));
-  } else {
-    write_positions(out, source.positions());
+  } else if (auto written = write_positions(out, source.positions(), sink); !written) {
+    return written;
   }
   out.u8(static_cast<std::uint8_t>(source.heights().stored.index()));
   out.varint(static_cast<std::uint64_t>(source.heights().shift));
-  std::visit([&](const auto& values) { write_heights(out, values, grid); }, source.heights().stored);
-  return out.finish();
+  auto written = std::visit([&](const auto& values) { return write_heights(out, values, grid, sink); },
+                            source.heights().stored);
+  if (!written) return written;
+  return sink(out.finish());
 }
 
-base::Result<SourceSamples> decode_source(std::string_view bytes, std::shared_ptr<const SourceGrid> grid) {
-  Reader in(bytes, kMagic, kVersion, "source");
+std::string encode_source(const SourceSamples& source) {
+  std::string bytes;
+  const auto done = encode_source(source, [&bytes](std::string_view piece) -> base::Result<void> {
+    bytes += piece;
+    return {};
+  });
+  TIN_CHECK(done.ok());
+  return bytes;
+}
+
+base::Result<SourceSamples> decode_source(std::string_view bytes, std::shared_ptr<const SourceGrid> grid,
+                                          std::pmr::memory_resource* memory) {
+  Reader in(bytes, kMagic, kVersion, "source", base::Pace(memory));
   const std::uint8_t kind = in.u8();
   in.require(kind == kRaster || kind == kPoints, "an unknown kind of source");
   in.require((kind == kRaster) == (grid != nullptr), "a raster without its grid, or points with one");
   if (!in.ok()) return in.error();
-  SourceSamples source = kind == kRaster ? read_raster(in, std::move(grid)) : read_points(in);
+  SourceSamples source = kind == kRaster ? read_raster(in, std::move(grid), memory) : read_points(in, memory);
   in.finish();
   if (!in.ok()) return in.error();
   return source;

@@ -155,5 +155,39 @@ TEST(SourceCodecTest, NewerVersionsAreRefused) {
   EXPECT_EQ(decoded.error().code, base::Code::kUnsupported);
 }
 
+TEST(SourceCodecTest, PiecesMakeTheSameBytesAndTheSinkMayEndThem) {
+  auto grid = std::make_shared<SourceGrid>();
+  grid->width = 1500;
+  grid->height = 1200;
+  grid->dx = 7;
+  grid->dy = -7;
+  std::vector<double> heights;
+  std::vector<Placement> points;
+  for (int i = 0; i < 1500 * 1200; ++i) {
+    heights.push_back((i * 7919) % 1000);
+    if (i < 400'000) points.push_back({{i * 3, (i * 7919) % 1000}, i % 999 + 0.5});
+  }
+  for (const auto& source : {SourceSamples::raster(grid, heights), SourceSamples::points(points)}) {
+    std::string together;
+    int pieces = 0;
+    ASSERT_TRUE(encode_source(source, [&](std::string_view piece) -> base::Result<void> {
+      together += piece;
+      ++pieces;
+      EXPECT_LT(piece.size(), std::size_t{3} << 20);
+      return {};
+    }));
+    EXPECT_GT(pieces, 1);
+    EXPECT_TRUE(together == encode_source(source));
+    EXPECT_TRUE(decode_source(together, source.grid()));
+    int taken = 0;
+    const auto ended = encode_source(source, [&](std::string_view) -> base::Result<void> {
+      ++taken;
+      return base::error(base::Code::kNoSpace, "full");
+    });
+    EXPECT_EQ(ended.error().code, base::Code::kNoSpace);
+    EXPECT_EQ(taken, 1);
+  }
+}
+
 }  // namespace
 }  // namespace tin::codec
