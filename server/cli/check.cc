@@ -50,7 +50,8 @@ std::string fault_in_tin(store::Store& store, const std::string& id, std::string
   if (!state) return state.error().message;
   if (const auto fault = tin::mesh::validate(state->terrain.mesh())) return *fault;
   if (const std::string fault = fault_in_journal(store, id); !fault.empty()) return fault;
-  const auto source = store.load_source(id);
+  const auto source =
+      store.read_source(id, [](std::string_view, std::uint64_t) { return tin::base::Result<void>(); });
   if (!source) return source.error().message;
   summary = "revision " + std::to_string(state->revision) + ", " +
             std::to_string(state->terrain.vertex_count()) + " vertices, digest " + state->terrain.digest();

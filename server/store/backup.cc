@@ -16,7 +16,6 @@ using tin::base::Code;
 using tin::base::Result;
 
 constexpr const char* kDatabase = "tinsmith.sqlite3";
-constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 constexpr int kAttempts = 5;
 
 constexpr const char* kBackupTables = R"sql(
@@ -41,14 +40,17 @@ Result<std::vector<FileReference>> named_files(Database& database) {
   }
 }
 
-Result<void> put_in(Database& backup, const std::string& name, std::string_view bytes) {
-  for (std::int64_t chunk = 0; !bytes.empty(); ++chunk) {
-    const std::string_view piece = bytes.substr(0, kChunkBytes);
+Result<void> put_in(Database& backup, const Files& files, const FileReference& file) {
+  std::int64_t chunk = 0;
+  return files.read(file, [&](std::string_view piece) {
     Query insert = backup.query("INSERT INTO backup_chunk(name, chunk, bytes) VALUES(?, ?, ?)");
-    if (auto done = insert.bind_text(name).bind(chunk).bind_blob(piece).run(); !done.ok()) return done;
-    bytes.remove_prefix(piece.size());
-  }
-  return {};
+    return insert.bind_text(file.name).bind(chunk++).bind_blob(piece).run();
+  });
+}
+
+/// Whether a file is what was put.
+Result<void> verify(const Files& files, const FileReference& file) {
+  return files.read(file, [](std::string_view) { return Result<void>(); });
 }
 
 Result<void> sync_file(const std::filesystem::path& file) {
@@ -97,13 +99,12 @@ Result<void> add_files(const std::filesystem::path& folder, const std::filesyste
   auto files = Files::open(folder / "files", std::make_shared<Disk>());
   if (!files.ok()) return files.error();
   for (const FileReference& file : *named) {
-    const auto bytes = files->get(file);
-    if (!bytes.ok() && !std::filesystem::exists(folder / "files" / file.name))
-      return tin::base::error(Code::kNotFound, bytes.error().message);
-    if (!bytes.ok()) return bytes.error();
     Transaction transaction(backup);
     if (!transaction.begun().ok()) return transaction.begun();
-    if (auto put = put_in(backup, file.name, *bytes); !put.ok()) return put;
+    const auto put = put_in(backup, *files, file);
+    if (!put.ok() && !std::filesystem::exists(folder / "files" / file.name))
+      return tin::base::error(Code::kNotFound, put.error().message);
+    if (!put.ok()) return put;
     if (auto done = transaction.commit(); !done.ok()) return done;
   }
   return {};
@@ -147,7 +148,7 @@ Result<void> restore_into(const std::filesystem::path& file, const std::filesyst
     if (!named.ok()) return named.error();
     for (const FileReference& one : *named) {
       if (auto out = take_out(database, one, files->folder()); !out.ok()) return out;
-      if (const auto checked = files->get(one); !checked.ok()) return checked.error();
+      if (auto checked = verify(*files, one); !checked.ok()) return checked;
     }
     if (auto synced = disk.sync_folder(files->folder()); !synced.ok()) return synced;
     if (auto dropped = database.execute("DROP TABLE backup_chunk; VACUUM"); !dropped.ok()) return dropped;

@@ -20,6 +20,7 @@ namespace {
 using tin::base::Code;
 using tin::base::Result;
 
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 constexpr std::string_view kAside = ".part";  // the end of a name while the file is written
 
 tin::base::Error system_error(const std::string& what) {
@@ -88,15 +89,17 @@ Result<Files> Files::open(const std::filesystem::path& folder, std::shared_ptr<D
   return Files(folder, std::move(disk));
 }
 
-Result<FileReference> Files::put(const std::vector<std::string_view>& parts, std::string_view suffix) {
+Result<FileReference> Files::put(const Pieces& pieces, std::string_view suffix) {
   FileReference file{random_name(suffix), 0, 0};
-  for (const std::string_view part : parts) {
-    file.bytes += part.size();
-    file.crc = tin::codec::crc32c(part, file.crc);
-  }
   const std::filesystem::path path = folder_ / file.name;
   const std::filesystem::path aside = path.string() + std::string(kAside);
-  auto done = write(aside, parts);
+  Result<void> done;
+  try {
+    done = write(aside, pieces, file);
+  } catch (...) {  // whoever gives the pieces may run out of memory
+    disk_->remove(aside);
+    throw;
+  }
   if (done) done = disk_->rename(aside, path);
   if (done) {
     done = disk_->sync_folder(folder_);
@@ -108,19 +111,23 @@ Result<FileReference> Files::put(const std::vector<std::string_view>& parts, std
   return file;
 }
 
-Result<void> Files::write(const std::filesystem::path& path, const std::vector<std::string_view>& parts) {
+Result<void> Files::write(const std::filesystem::path& path, const Pieces& pieces, FileReference& file) {
   const auto descriptor = disk_->create(path);
   if (!descriptor) return descriptor.error();
-  Result<void> done;
-  for (const std::string_view part : parts) {
-    if (done) done = disk_->write(*descriptor, part);
-  }
-  if (done) done = disk_->sync(*descriptor);
-  disk_->close(*descriptor);
-  return done;
+  struct Closed {
+    Disk& disk;
+    const int number;
+    ~Closed() { disk.close(number); }
+  } const closed{*disk_, *descriptor};
+  auto done = pieces([&](std::string_view piece) -> Result<void> {
+    file.bytes += piece.size();
+    file.crc = tin::codec::crc32c(piece, file.crc);
+    return disk_->write(*descriptor, piece);
+  });
+  return done ? disk_->sync(*descriptor) : done;
 }
 
-Result<std::string> Files::get(const FileReference& file) const {
+Result<void> Files::read(const FileReference& file, const Sink& sink) const {
   const std::filesystem::path path = folder_ / file.name;
   const auto damaged = [&](const std::string& what) {
     return tin::base::error(Code::kStorage, "the store is damaged: " + path.string() + " " + what);
@@ -129,10 +136,27 @@ Result<std::string> Files::get(const FileReference& file) const {
   const auto size = std::filesystem::file_size(path, missing);
   if (missing) return damaged("cannot be read: " + missing.message());
   if (size != file.bytes) return damaged("has another length than was written");
-  std::string bytes(file.bytes, '\0');
   std::ifstream in(path, std::ios::binary);
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) return damaged("cannot be read");
-  if (tin::codec::crc32c(bytes) != file.crc) return damaged("does not match its checksum");
+  std::string piece;
+  std::uint32_t crc = 0;
+  for (std::uint64_t left = file.bytes; left > 0; left -= piece.size()) {
+    piece.resize(static_cast<std::size_t>(std::min<std::uint64_t>(left, kPieceBytes)));
+    if (!in.read(piece.data(), static_cast<std::streamsize>(piece.size()))) return damaged("cannot be read");
+    crc = tin::codec::crc32c(piece, crc);
+    if (auto taken = sink(piece); !taken) return taken;
+  }
+  if (crc != file.crc) return damaged("does not match its checksum");
+  return {};
+}
+
+Result<std::string> Files::get(const FileReference& file) const {
+  std::string bytes;
+  const auto read_all = read(file, [&](std::string_view piece) -> Result<void> {
+    if (bytes.empty()) bytes.reserve(file.bytes);
+    bytes += piece;
+    return {};
+  });
+  if (!read_all) return read_all.error();
   return bytes;
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/store/pieces.h"
 #include "tin/base/result.h"
 
 namespace server::store {
@@ -43,10 +44,13 @@ class Files {
   /// Errors: kStorage.
   static tin::base::Result<Files> open(const std::filesystem::path& folder, std::shared_ptr<Disk> disk);
 
-  /// Writes `parts`, one after the other, to a new file; `suffix` says what it is. It is durable, name and
-  /// all, when this returns. Errors: kStorage, kNoSpace; then no file is left.
-  tin::base::Result<FileReference> put(const std::vector<std::string_view>& parts, std::string_view suffix);
-  /// Errors: kStorage when the file is missing, or is not what was put.
+  /// Writes the pieces to a new file; `suffix` says what it is. It is durable, name and all, when this
+  /// returns. Errors: kStorage, kNoSpace, those of `pieces`; then no file is left.
+  tin::base::Result<FileReference> put(const Pieces& pieces, std::string_view suffix);
+  /// Gives the bytes of the file to `sink` as they are read; nothing is known of them before this has
+  /// returned. Errors: kStorage when the file is missing, or is not what was put; the sink's.
+  tin::base::Result<void> read(const FileReference& file, const Sink& sink) const;
+  /// All of them. Errors: as read().
   tin::base::Result<std::string> get(const FileReference& file) const;
   void remove(const std::string& name) noexcept;
   /// Removes all files but these: what a crash left between a file and its row. `kept` ascends.
@@ -57,8 +61,7 @@ class Files {
  private:
   Files(std::filesystem::path folder, std::shared_ptr<Disk> disk)
       : folder_(std::move(folder)), disk_(std::move(disk)) {}
-  tin::base::Result<void> write(const std::filesystem::path& path,
-                                const std::vector<std::string_view>& parts);
+  tin::base::Result<void> write(const std::filesystem::path& path, const Pieces& pieces, FileReference& file);
 
   std::filesystem::path folder_;
   std::shared_ptr<Disk> disk_;

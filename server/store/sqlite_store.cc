@@ -28,7 +28,7 @@ class SqliteStore : public Store {
   Result<void> open_for_reading(const std::filesystem::path& folder);
 
   Result<void> create_tin(const TinRecord& tin, std::uint64_t revision, std::string_view checkpoint,
-                          std::string_view source) override;
+                          const Pieces& source) override;
   Result<void> update_title(std::string_view tin, std::string_view title) override;
   Result<void> remove_tin(std::string_view tin) override;
   Result<void> append(std::string_view tin, std::span<const Entry> entries) override;
@@ -39,7 +39,7 @@ class SqliteStore : public Store {
 
   Result<std::vector<TinRecord>> list() override;
   Result<Loaded> load(std::string_view tin) override;
-  Result<std::string> load_source(std::string_view tin) override;
+  Result<void> read_source(std::string_view tin, const MeasuredSink& sink) override;
   Result<std::vector<JournalRow>> read_journal(std::string_view tin, const JournalRange& range) override;
   Result<JournalExtent> journal_extent(std::string_view tin) override;
   Result<std::optional<Answer>> find_answer(std::string_view tin, std::string_view key) override;
@@ -128,7 +128,7 @@ Result<void> SqliteStore::limit_size(std::int64_t bytes) {
 /// Brings a large checkpoint to disk; a small one goes into a row.
 Result<NewCheckpoint> SqliteStore::place(std::string_view checkpoint) {
   if (checkpoint.size() <= row_bytes_) return NewCheckpoint{{}, checkpoint};
-  auto file = files_->put({checkpoint}, "checkpoint");
+  auto file = files_->put([checkpoint](const Sink& sink) { return sink(checkpoint); }, "checkpoint");
   if (!file.ok()) return file.error();
   return NewCheckpoint{*std::move(file), {}};
 }
@@ -154,10 +154,10 @@ Result<void> SqliteStore::change(std::string_view tin, Step step) {
 }
 
 Result<void> SqliteStore::create_tin(const TinRecord& tin, std::uint64_t revision,
-                                     std::string_view checkpoint, std::string_view source) {
+                                     std::string_view checkpoint, const Pieces& source) {
   std::array<FileReference, 2> files;
-  if (!source.empty()) {
-    auto put = files_->put({source}, "source");
+  if (source) {
+    auto put = files_->put(source, "source");
     if (!put.ok()) return put.error();
     files[0] = *std::move(put);
   }
@@ -263,13 +263,13 @@ Result<Loaded> SqliteStore::load(std::string_view tin) {
   }
 }
 
-Result<std::string> SqliteStore::load_source(std::string_view tin) {
+Result<void> SqliteStore::read_source(std::string_view tin, const MeasuredSink& sink) {
   std::unique_lock lock(reading_mutex_);
   const auto head = read_head(reading_, tin);
   if (!head.ok()) return head.error();
   lock.unlock();
-  if (head->source.name.empty()) return std::string();
-  return files_->get(head->source);
+  if (head->source.name.empty()) return {};
+  return files_->read(head->source, [&](std::string_view piece) { return sink(piece, head->source.bytes); });
 }
 
 Result<std::vector<JournalRow>> SqliteStore::read_journal(std::string_view tin, const JournalRange& range) {

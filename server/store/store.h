@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/store/pieces.h"
 #include "tin/base/result.h"
 
 namespace server::store {
@@ -121,9 +122,15 @@ class Store {
   virtual ~Store() = default;
 
   /// `source` is kept beside the checkpoint for as long as the TIN is there, and is never written again; an
-  /// empty one is none. Errors: kConflict when there is a TIN with this id.
+  /// empty function is none. Errors: kConflict when there is a TIN with this id; those of `source`.
   virtual tin::base::Result<void> create_tin(const TinRecord& tin, std::uint64_t revision,
-                                             std::string_view checkpoint, std::string_view source = {}) = 0;
+                                             std::string_view checkpoint, const Pieces& source) = 0;
+  /// The same with a source that is there as a whole; an empty one is none.
+  tin::base::Result<void> create_tin(const TinRecord& tin, std::uint64_t revision,
+                                     std::string_view checkpoint, std::string_view source = {}) {
+    if (source.empty()) return create_tin(tin, revision, checkpoint, Pieces());
+    return create_tin(tin, revision, checkpoint, [source](const Sink& sink) { return sink(source); });
+  }
   /// Errors: kNotFound.
   virtual tin::base::Result<void> update_title(std::string_view tin, std::string_view title) = 0;
   /// Removes the TIN with all that belongs to it. Errors: kNotFound.
@@ -146,9 +153,20 @@ class Store {
   virtual tin::base::Result<std::vector<TinRecord>> list() = 0;
   /// Errors: kNotFound; kStorage also when a row is missing or does not match its checksum.
   virtual tin::base::Result<Loaded> load(std::string_view tin) = 0;
-  /// The source that the TIN was created with; empty when it has none. Errors: kNotFound; kStorage also when
-  /// it is missing or does not match its checksum.
-  virtual tin::base::Result<std::string> load_source(std::string_view tin) = 0;
+  /// Gives the source that the TIN was created with to `sink` as it is read, nothing when it has none;
+  /// nothing is known of the bytes before this has returned. Errors: kNotFound; kStorage also when it is
+  /// missing or does not match its checksum; the sink's.
+  virtual tin::base::Result<void> read_source(std::string_view tin, const MeasuredSink& sink) = 0;
+  /// All of it; empty when there is none. Errors: as read_source().
+  tin::base::Result<std::string> load_source(std::string_view tin) {
+    std::string bytes;
+    const auto done = read_source(tin, [&](std::string_view piece, std::uint64_t) -> tin::base::Result<void> {
+      bytes += piece;
+      return {};
+    });
+    if (!done) return done.error();
+    return bytes;
+  }
   /// Errors: kNotFound; kStorage also when a row is missing or does not match its checksum.
   virtual tin::base::Result<std::vector<JournalRow>> read_journal(std::string_view tin,
                                                                   const JournalRange& range) = 0;

@@ -27,7 +27,7 @@ class FailingStore : public server::store::Store {
   std::atomic<std::size_t> commits{0};
 
   Result<void> create_tin(const server::store::TinRecord&, std::uint64_t, std::string_view,
-                          std::string_view) override {
+                          const server::store::Pieces&) override {
     return status();
   }
   Result<void> update_title(std::string_view, std::string_view) override { return status(); }
@@ -53,7 +53,9 @@ class FailingStore : public server::store::Store {
   Result<server::store::Loaded> load(std::string_view) override {
     return tin::base::error(tin::base::Code::kNotFound, "");
   }
-  Result<std::string> load_source(std::string_view) override { return source; }
+  Result<void> read_source(std::string_view, const server::store::MeasuredSink& sink) override {
+    return source.empty() ? Result<void>() : sink(source, source.size());
+  }
   Result<std::vector<JournalRow>> read_journal(std::string_view,
                                                const server::store::JournalRange& range) override {
     const std::lock_guard guard(mutex_);

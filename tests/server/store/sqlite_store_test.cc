@@ -110,6 +110,15 @@ TEST_F(SqliteStoreTest, DamagedAndMissingSourcesAreReported) {
   }
 }
 
+TEST_F(SqliteStoreTest, ASourceThatEndsOnItsWayLeavesNoFile) {
+  const auto broken = [](const Sink& sink) -> tin::base::Result<void> {
+    if (auto first = sink("some"); !first) return first;
+    return tin::base::error(Code::kCancelled, "");
+  };
+  EXPECT_TRUE(fails(store_->create_tin({"b", "", 0}, 1, "b", broken), Code::kCancelled));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "files"));
+}
+
 TEST_F(SqliteStoreTest, LargeCheckpointsAreFilesAndOldOnesGo) {
   store_.reset();
   store_ = *open_sqlite_store(folder_.path(), {.checkpoint_row_bytes = 100});

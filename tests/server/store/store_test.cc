@@ -160,6 +160,45 @@ TEST_P(StoreTest, TheSourceStaysAsItWasBesideAllCheckpoints) {
   EXPECT_EQ(store_->load_source("alps").value(), "new");
 }
 
+TEST_P(StoreTest, ASourceComesAndGoesInPieces) {
+  const std::string piece(3'000'000, 'p');
+  const auto pieces = [&piece](const Sink& sink) -> tin::base::Result<void> {
+    for (int i = 0; i < 3; ++i) {
+      if (auto taken = sink(piece); !taken) return taken;
+    }
+    return {};
+  };
+  ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "one", pieces)));
+  std::string together;
+  std::size_t largest = 0;
+  ASSERT_TRUE(succeeds(
+      store_->read_source("alps", [&](std::string_view part, std::uint64_t whole) -> tin::base::Result<void> {
+        EXPECT_EQ(whole, 9'000'000U);
+        largest = std::max(largest, part.size());
+        together += part;
+        return {};
+      })));
+  EXPECT_TRUE(together == piece + piece + piece);
+  EXPECT_LE(largest, std::size_t{1} << 20);
+  int taken = 0;
+  const auto ended =
+      store_->read_source("alps", [&](std::string_view, std::uint64_t) -> tin::base::Result<void> {
+        ++taken;
+        return tin::base::error(Code::kCancelled, "");
+      });
+  EXPECT_TRUE(fails(ended, Code::kCancelled));
+  EXPECT_EQ(taken, 1);
+  // What ends on its way was never there.
+  const auto broken = [&piece](const Sink& sink) -> tin::base::Result<void> {
+    if (auto first = sink(piece); !first) return first;
+    return tin::base::error(Code::kCancelled, "");
+  };
+  EXPECT_TRUE(fails(store_->create_tin({"b", "", 0}, 1, "b", broken), Code::kCancelled));
+  EXPECT_TRUE(fails(store_->load("b"), Code::kNotFound));
+  ASSERT_TRUE(succeeds(store_->create_tin({"b", "", 0}, 1, "b", "whole")));
+  EXPECT_EQ(store_->load_source("b").value(), "whole");
+}
+
 TEST_P(StoreTest, TitlesChange) {
   ASSERT_TRUE(succeeds(store_->create_tin(kAlps, 1, "")));
   ASSERT_TRUE(succeeds(store_->update_title("alps", "Die Alpen")));
