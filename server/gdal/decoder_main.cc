@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -66,20 +67,45 @@ class Teller {
   std::jthread thread_;
 };
 
-Result<Import> guarded_import(const std::filesystem::path& file, const ImportOptions& options,
-                              tin::base::Progress& progress) {
+/// Sends a raster's heights as they are read, so that they are never all here. From then on nobody else
+/// writes.
+class SendingRows final : public RowTaker {
+ public:
+  explicit SendingRows(std::optional<Teller>& teller) : teller_(teller) {}
+  bool begin(const Import& import) override {
+    teller_.reset();
+    began_ = true;
+    return send_beginning(import, write_all);
+  }
+  bool take(std::span<const double> heights) override { return send_rows(heights, write_all); }
+  bool began() const { return began_; }
+
+ private:
+  std::optional<Teller>& teller_;
+  bool began_ = false;
+};
+
+/// Reads the file and sends what it holds, or why it cannot be read. False when nobody listens.
+bool import_and_send(const std::filesystem::path& file, const ImportOptions& options) {
   const auto no_memory = [] {
-    return error(Code::kTooLarge, "Reading the file takes more memory than the limit here");
+    return send_error(error(Code::kTooLarge, "Reading the file takes more memory than the limit here"),
+                      write_all);
   };
   try {
-    const Teller teller(progress);
-    return import_file(file, options, &progress);
+    tin::base::Progress progress;
+    std::optional<Teller> teller(std::in_place, progress);
+    SendingRows rows(teller);
+    const auto import = import_file(file, options, &progress, &rows);
+    teller.reset();
+    if (!import) return send_error(import.error(), write_all);
+    return rows.began() ? send_end(write_all) : send_import(*import, write_all);
   } catch (const std::bad_alloc&) {
     return no_memory();
   } catch (const std::system_error&) {  // there was none for a thread's stack
     return no_memory();
   } catch (const std::exception&) {
-    return error(Code::kInvalidValue, "The file is damaged in a way that its decoder does not know");
+    return send_error(
+        error(Code::kInvalidValue, "The file is damaged in a way that its decoder does not know"), write_all);
   }
 }
 
@@ -93,9 +119,7 @@ int run_decoder() {
   std::error_code problem;
   const std::filesystem::path folder = std::filesystem::current_path(problem);
   if (problem || !confine_this_process(order->limits, folder)) return kNotConfined;
-  tin::base::Progress progress;
-  const auto import = guarded_import(folder / kUploadName, order->options, progress);
-  const bool sent = import ? send_import(*import, write_all) : send_error(import.error(), write_all);
+  const bool sent = import_and_send(folder / kUploadName, order->options);
   // No destructors: what a hostile file may have done to memory is not to be walked through.
   ::_exit(sent ? 0 : 1);
 }

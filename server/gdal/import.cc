@@ -87,7 +87,7 @@ bool holds_raster(Format format) {
 }  // namespace
 
 Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOptions& options,
-                           tin::base::Progress* progress) {
+                           tin::base::Progress* progress, RowTaker* rows) {
   prepare_library();
   std::optional<CrsInfo> asked;
   if (!options.crs.empty()) {
@@ -103,7 +103,8 @@ Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOp
     return tin::base::error(tin::base::Code::kInvalidValue, "Only the points of LAS files have classes",
                             "query:class");
   }
-  const ImportTask task{options, *workspace, recognised->format, std::move(asked), progress};
+  const ImportTask task{options,          *workspace, recognised->format,
+                        std::move(asked), progress,   options.heights_only ? rows : nullptr};
   auto import = holds_raster(task.format) ? import_raster(task) : import_points(task);
   if (import) task.report(1);
   return import;

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <memory_resource>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,8 +56,21 @@ struct Import {
   std::string driver;                              // GDAL's name of the format, or "CSV"
 };
 
-/// Reads an uploaded file, which stays where it is, in this process: see decoder.h for hostile ones. Only formats of a fixed list are tried, on a private link
-/// to the file without its neighbours, and no network, VRT or sidecar file can be reached by what it says.
+/// Takes the heights of a raster as they are read, for one who does not hold them all.
+class RowTaker {
+ public:
+  virtual ~RowTaker() = default;
+  /// Once, before the first of them: frame, driver and grid are known, but not its mask. False: no more is
+  /// wanted.
+  virtual bool begin(const Import& import) = 0;
+  /// The next pixels, row by row, whole rows at a time; NaN where there is no sample. False: no more is
+  /// wanted.
+  virtual bool take(std::span<const double> heights) = 0;
+};
+
+/// Reads an uploaded file, which stays where it is, in this process: see decoder.h for hostile ones. Only
+/// formats of a fixed list are tried, on a private link to the file without its neighbours, and no network,
+/// VRT or sidecar file can be reached by what it says.
 ///
 /// Rasters: band 1, pixel centres, scale and offset applied; pixels that are nodata, masked, not finite or
 /// larger than 1e30 (undeclared fill values) are void. Rows may run north to south or south to north.
@@ -69,8 +83,9 @@ struct Import {
 /// Errors: kInvalidValue (empty file or raster, no valid sample, no georeference, an HGT without its name, no
 /// heights, unknown layer or field), kUnsupported (format, CRS, rotated raster, complex pixels), kMalformed
 /// (with the line for text), kNotFinite, kTooLarge, kCancelled, kStorage. Threads: any number at once on
-/// different files. `progress` may be null.
+/// different files. `progress` may be null. With `rows` and options.heights_only a raster's heights and mask
+/// go there, and the import is without them.
 tin::base::Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOptions& options,
-                                      tin::base::Progress* progress);
+                                      tin::base::Progress* progress, RowTaker* rows = nullptr);
 
 }  // namespace server::gdal

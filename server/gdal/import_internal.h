@@ -22,6 +22,7 @@ struct ImportTask {
   Format format;
   std::optional<CrsInfo> asked_crs;  // options.crs, read
   tin::base::Progress* progress;     // or null
+  RowTaker* rows = nullptr;          // of a raster's heights, or null
 
   bool cancelled() const { return progress != nullptr && progress->cancelled(); }
   void report(double fraction) const {

@@ -20,11 +20,13 @@ using tin::base::Result;
 using tin::terrain::Placement;
 using tin::terrain::SourceGrid;
 
-constexpr char kProgress = 'P', kHead = 'H', kPlacements = 'V', kMask = 'G', kHeights = 'S', kError = 'E',
-               kEnd = 'Z';
+constexpr char kProgress = 'P', kHead = 'H', kPlacements = 'V', kMask = 'G', kHeights = 'S', kRows = 'R',
+               kError = 'E', kEnd = 'Z';
 constexpr std::size_t kFrameHead = 5;  // the kind, and the length in four bytes
 constexpr std::size_t kMostFrameBytes = std::size_t{1} << 20;
 constexpr std::size_t kMostTextBytes = 64 * 1024;
+constexpr std::size_t kHeightsAtOnce =
+    tin::base::kPaceBytes / sizeof(double);  // between two words about them
 static_assert(std::is_trivially_copyable_v<Placement> && sizeof(Placement) == 16);
 
 tin::base::Error nonsense() {
@@ -190,9 +192,12 @@ static_assert(std::variant_size_v<decltype(tin::terrain::SourceSamples::Heights:
 
 /// Whether every pixel that counts as a sample has a height.
 bool sound_heights(const Import& import) {
+  if (import.heights.stored.index() < 2) return true;  // whole numbers
   const std::size_t count = import.heights.size();
+  const tin::base::Pace pace(import.heights.memory());
   for (std::size_t i = 0; i < count; ++i) {
     const auto& valid = import.grid->valid;
+    if (i % kHeightsAtOnce == 0) pace.touched(1, kHeightsAtOnce * sizeof(double));
     const bool is_sample = valid.empty() || ((valid[i / 64] >> (i % 64)) & 1U) != 0;
     if (is_sample && !finite(import.heights.at(i))) return false;
   }
@@ -221,7 +226,9 @@ bool send_progress(double fraction, const Sink& sink) {
   return send_frame(kProgress, out.take(), sink);
 }
 
-bool send_import(const Import& import, const Sink& sink) {
+namespace {
+
+bool send_head(const Import& import, bool in_rows, const Sink& sink) {
   const auto& [frame, placements, grid, heights, driver] = import;
   Writer out;
   const auto put = [&](const auto& member) { out.put(member); };
@@ -231,6 +238,7 @@ bool send_import(const Import& import, const Sink& sink) {
   out.put(static_cast<char>(heights.stored.index()));
   out.put(heights.shift);
   out.put(std::uint64_t{heights.size()});
+  out.put(static_cast<char>(in_rows));
   out.put(static_cast<char>(grid != nullptr));
   if (grid) {
     char has_nodata = grid->nodata.has_value() ? 1 : 0;
@@ -238,11 +246,30 @@ bool send_import(const Import& import, const Sink& sink) {
     visit_grid(*grid, nodata, has_nodata, put);
     out.put(std::uint64_t{grid->valid.size()});
   }
-  return send_frame(kHead, out.take(), sink) && send_array(kPlacements, std::span(placements), sink) &&
+  return send_frame(kHead, out.take(), sink);
+}
+
+}  // namespace
+
+bool send_import(const Import& import, const Sink& sink) {
+  const auto& [frame, placements, grid, heights, driver] = import;
+  return send_head(import, false, sink) && send_array(kPlacements, std::span(placements), sink) &&
          (!grid || send_array(kMask, std::span(std::as_const(grid->valid)), sink)) &&
          std::visit([&](const auto& numbers) { return send_array(kHeights, std::span(numbers), sink); },
                     heights.stored) &&
-         send_frame(kEnd, {}, sink);
+         send_end(sink);
+}
+
+bool send_beginning(const Import& import, const Sink& sink) {
+  return send_head(import, true, sink);
+}
+
+bool send_rows(std::span<const double> heights, const Sink& sink) {
+  return send_array(kRows, heights, sink);
+}
+
+bool send_end(const Sink& sink) {
+  return send_frame(kEnd, {}, sink);
 }
 
 bool send_error(const tin::base::Error& problem, const Sink& sink) {
@@ -297,6 +324,7 @@ Result<void> ImportReceiver::take_frame(char kind, std::string_view body) {
   if (kind == kPlacements) return take_placements(body);
   if (kind == kMask) return take_mask(body);
   if (kind == kHeights) return take_heights(body);
+  if (kind == kRows) return take_rows(body);
   return kind == kEnd && body.empty() ? conclude() : nonsense();
 }
 
@@ -311,6 +339,8 @@ Result<void> ImportReceiver::take_head(std::string_view body) {
   in.get(kind_of_heights);
   in.get(import.heights.shift);
   in.get(heights_);
+  char in_rows = 0;
+  in.get(in_rows);
   if (!in.good() || !choose_kind(import.heights, kind_of_heights, memory_)) return nonsense();
   char has_grid = 0;
   in.get(has_grid);
@@ -326,11 +356,22 @@ Result<void> ImportReceiver::take_head(std::string_view body) {
     if (mask_words_ != 0 && mask_words_ != (pixels + 63) / 64) return nonsense();
     if (heights_ != 0 && heights_ != pixels) return nonsense();
     grid->valid.reserve(mask_words_);
+    if (in_rows != 0) {
+      if (heights_ != 0 || mask_words_ != 0) return nonsense();
+      heights_ = pixels;
+      grid->valid.assign((pixels + 63) / 64, 0);
+    }
     import.grid = std::move(grid);
   }
   if (!in.done() || !sound(import.frame) || placements_ > max_samples_) return nonsense();
   if (heights_ != 0 && !import.grid) return nonsense();
   import.placements.reserve(placements_);
+  if (in_rows != 0) {
+    if (!import.grid || placements_ != 0) return nonsense();
+    rows_.emplace(heights_, memory_);
+    import_ = std::move(import);
+    return {};
+  }
   std::visit([this](auto& numbers) { numbers.reserve(heights_); }, import.heights.stored);
   import_ = std::move(import);
   return {};
@@ -354,14 +395,38 @@ Result<void> ImportReceiver::take_mask(std::string_view body) {
   if (!import_->grid) return nonsense();
   auto& valid = import_->grid->valid;
   const std::size_t count = body.size() / sizeof(std::uint64_t);
-  if (body.size() % sizeof(std::uint64_t) != 0 || count > mask_words_ - valid.size()) return nonsense();
+  if (rows_ || body.size() % sizeof(std::uint64_t) != 0 || count > mask_words_ - valid.size())
+    return nonsense();
   const std::size_t before = valid.size();
   valid.resize(before + count);
   std::memcpy(valid.data() + before, body.data(), body.size());
   return {};
 }
 
+Result<void> ImportReceiver::take_rows(std::string_view body) {
+  if (!rows_ || body.size() % sizeof(double) != 0 || body.size() / sizeof(double) > heights_ - rows_->size())
+    return nonsense();
+  auto& valid = import_->grid->valid;
+  for (; !body.empty(); body.remove_prefix(sizeof(double))) {
+    double height = 0;
+    std::memcpy(&height, body.data(), sizeof height);
+    if (std::isnan(height)) {
+      rows_->skip();
+      continue;
+    }
+    if (!finite(height)) return nonsense();
+    const std::size_t bit = rows_->size();
+    rows_->add(height);
+    valid[bit / 64] |= std::uint64_t{1} << (bit % 64);
+    ++valid_;
+  }
+  if (progress_ != nullptr)
+    progress_->report(static_cast<double>(rows_->size()) / static_cast<double>(heights_));
+  return {};
+}
+
 Result<void> ImportReceiver::take_heights(std::string_view body) {
+  if (rows_) return nonsense();
   const bool taken = std::visit(
       [&](auto& numbers) {
         using Number = typename std::decay_t<decltype(numbers)>::value_type;
@@ -369,6 +434,7 @@ Result<void> ImportReceiver::take_heights(std::string_view body) {
         if (body.size() % sizeof(Number) != 0 || count > heights_ - before) return false;
         numbers.resize(before + count);
         std::memcpy(numbers.data() + before, body.data(), body.size());
+        tin::base::Pace(memory_).touched(1, body.size());
         return true;
       },
       import_->heights.stored);
@@ -390,6 +456,13 @@ Result<void> ImportReceiver::take_error(std::string_view body) {
 }
 
 Result<void> ImportReceiver::conclude() {
+  if (rows_) {
+    if (rows_->size() != heights_ || valid_ == 0) return nonsense();
+    if (valid_ == heights_) import_->grid->valid.clear();
+    import_->heights = std::move(*rows_).finish();
+    outcome_ = Result<Import>(*std::move(import_));
+    return {};
+  }
   if (import_->placements.size() != placements_) return nonsense();
   if (import_->grid && import_->grid->valid.size() != mask_words_) return nonsense();
   if (import_->heights.size() != heights_ || !sound_heights(*import_)) return nonsense();

@@ -7,11 +7,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "server/gdal/import.h"
 #include "tin/base/result.h"
+#include "tin/terrain/heights_builder.h"
 
 namespace server::gdal {
 
@@ -24,6 +26,10 @@ using Sink = std::function<bool(std::string_view bytes)>;
 
 bool send_progress(double fraction, const Sink& sink);
 bool send_import(const Import& import, const Sink& sink);
+/// An import whose heights follow, row by row, and then its end.
+bool send_beginning(const Import& import, const Sink& sink);
+bool send_rows(std::span<const double> heights, const Sink& sink);
+bool send_end(const Sink& sink);
 bool send_error(const tin::base::Error& error, const Sink& sink);
 
 /// Puts an import together from the bytes of its decoder, whatever they are: never more samples or pixels
@@ -46,6 +52,7 @@ class ImportReceiver {
   tin::base::Result<void> take_placements(std::string_view body);
   tin::base::Result<void> take_mask(std::string_view body);
   tin::base::Result<void> take_heights(std::string_view body);
+  tin::base::Result<void> take_rows(std::string_view body);
   tin::base::Result<void> take_error(std::string_view body);
   tin::base::Result<void> conclude();
 
@@ -57,6 +64,8 @@ class ImportReceiver {
   std::uint64_t placements_ = 0;  // that the head promised
   std::uint64_t mask_words_ = 0;
   std::uint64_t heights_ = 0;
+  std::optional<tin::terrain::HeightsBuilder> rows_;  // if the heights come row by row
+  std::uint64_t valid_ = 0;                           // of these
   std::optional<tin::base::Result<Import>> outcome_;
 };
 

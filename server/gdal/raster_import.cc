@@ -204,20 +204,51 @@ Result<Import> fit(const ImportTask& task, GDALDataset& dataset) {
   return import;
 }
 
-/// Fills placements, heights and valid bits.
-std::optional<Error> read_samples(const ImportTask& task, GDALRasterBand& band, Samples& samples,
-                                  Import& import) {
+/// Keeps heights and valid bits, as one who takes rows.
+class KeptRows final : public RowTaker {
+ public:
+  KeptRows(Import& import, std::size_t pixels, std::pmr::memory_resource* memory)
+      : import_(import), heights_(pixels, memory) {
+    import.grid->valid.assign((pixels + 63) / 64, 0);
+  }
+
+  bool begin(const Import&) override { return true; }
+  bool take(std::span<const double> heights) override {
+    for (const double height : heights) {
+      if (std::isnan(height)) {
+        heights_.skip();
+      } else {
+        const std::size_t bit = heights_.size();
+        heights_.add(height);
+        import_.grid->valid[bit / 64] |= std::uint64_t{1} << (bit % 64);
+      }
+    }
+    return true;
+  }
+  /// `all` says that every pixel is a sample.
+  void finish(bool all) {
+    if (all) import_.grid->valid.clear();
+    import_.heights = std::move(heights_).finish();
+  }
+
+ private:
+  Import& import_;
+  tin::terrain::HeightsBuilder heights_;
+};
+
+/// Gives the heights to `rows`, and fills placements if they are wanted.
+Result<std::size_t> read_rows(const ImportTask& task, GDALRasterBand& band, Samples& samples, RowTaker& rows,
+                              Import& import) {
   const Complaints complaints;
-  tin::terrain::SourceGrid& grid = *import.grid;
+  const tin::terrain::SourceGrid& grid = *import.grid;
   const auto width = static_cast<std::size_t>(grid.width);
-  const std::size_t pixels = width * static_cast<std::size_t>(grid.height);
-  grid.valid.assign((pixels + 63) / 64, 0);
-  tin::terrain::HeightsBuilder heights(pixels, task.options.memory);
   std::size_t count = 0;
+  std::vector<double> heights(width);
   int block_x = 0, block_y = 0;
   band.GetBlockSize(&block_x, &block_y);
   const int at_once =
       std::clamp(block_y, 1, static_cast<int>(std::max<std::size_t>(1, kSamplesAtOnce / width)));
+  if (!rows.begin(import)) return cancelled_error();
   for (std::int32_t row = 0; row < grid.height; ++row) {
     if (task.cancelled()) return cancelled_error();
     const int within = row % at_once;
@@ -227,25 +258,35 @@ std::optional<Error> read_samples(const ImportTask& task, GDALRasterBand& band, 
     }
     const std::size_t first = static_cast<std::size_t>(within) * width;
     for (std::int32_t column = 0; column < grid.width; ++column) {
-      const double height = samples.height(first + static_cast<std::size_t>(column));
-      if (std::isnan(height)) {
-        heights.skip();
-        continue;
-      }
-      heights.add(height);
+      const auto i = static_cast<std::size_t>(column);
+      heights[i] = samples.height(first + i);
+      if (std::isnan(heights[i])) continue;
       ++count;
-      const std::size_t bit = static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column);
-      grid.valid[bit / 64] |= std::uint64_t{1} << (bit % 64);
-      if (!task.options.heights_only) import.placements.push_back({grid.centre(column, row), height});
+      if (!task.options.heights_only) import.placements.push_back({grid.centre(column, row), heights[i]});
     }
+    if (!rows.take(heights)) return cancelled_error();
     if (!task.options.heights_only && count > task.options.max_samples)
       return too_many_samples(task.options.max_samples);
     task.report(static_cast<double>(row + 1) / grid.height);
   }
   if (count == 0)
     return error(Code::kInvalidValue, "The raster holds no elevations: it is all nodata");
-  if (count == pixels) grid.valid.clear();
-  import.heights = std::move(heights).finish();
+  return count;
+}
+
+/// Fills placements, heights and valid bits, or gives the last two to who takes rows.
+std::optional<Error> read_samples(const ImportTask& task, GDALRasterBand& band, Samples& samples,
+                                  Import& import) {
+  if (task.rows != nullptr) {
+    const auto count = read_rows(task, band, samples, *task.rows, import);
+    return count ? std::nullopt : std::optional(count.error());
+  }
+  const std::size_t pixels =
+      static_cast<std::size_t>(import.grid->width) * static_cast<std::size_t>(import.grid->height);
+  KeptRows kept(import, pixels, task.options.memory);
+  const auto count = read_rows(task, band, samples, kept, import);
+  if (!count) return count.error();
+  kept.finish(*count == pixels);
   return std::nullopt;
 }
 

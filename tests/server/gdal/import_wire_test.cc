@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace server::gdal::testing {
@@ -89,6 +90,41 @@ TEST(ImportWireTest, LargeImportsTravelInManyFrames) {
   const auto there = received(sent_import(import), limits(200'000, 1));
   ASSERT_TRUE(there);
   EXPECT_EQ(there->placements, import.placements);
+}
+
+/// The sample as one who sends row by row sends it; NaN where its mask says so.
+std::string sent_in_rows(const std::vector<double>& heights) {
+  Import head = sample();
+  head.placements.clear();
+  head.heights = {};
+  head.grid->valid.clear();
+  return sent([&](const Sink& sink) {
+    return send_beginning(head, sink) && send_rows(std::span(heights).first(heights.size() / 2), sink) &&
+           send_rows(std::span(heights).subspan(heights.size() / 2), sink) && send_end(sink);
+  });
+}
+
+TEST(ImportWireTest, HeightsMayTravelRowByRow) {
+  constexpr double kVoid = std::numeric_limits<double>::quiet_NaN();
+  const auto some = received(sent_in_rows({0, 0.5, kVoid, 1.5, 2, 70000}));
+  ASSERT_TRUE(some) << some.error().message;
+  EXPECT_EQ(some->grid->valid, std::vector<std::uint64_t>{0b111011});
+  EXPECT_EQ(some->heights.size(), 6U);
+  EXPECT_EQ(some->heights.at(5), 70000);
+  EXPECT_EQ(some->heights.at(1), 0.5);
+  EXPECT_TRUE(some->placements.empty());
+  const auto all = received(sent_in_rows({0, 1, 2, 3, 4, 5}));
+  ASSERT_TRUE(all);
+  EXPECT_TRUE(all->grid->valid.empty());
+  EXPECT_EQ(all->heights.stored.index(), 0U);
+  for (const std::vector<double>& wrong :
+       std::vector<std::vector<double>>{{0, 1, 2, 3, 4},
+                                        {0, 1, 2, 3, 4, 5, 6},
+                                        {0, 1, 2, 3, 4, std::numeric_limits<double>::infinity()},
+                                        {kVoid, kVoid, kVoid, kVoid, kVoid, kVoid}}) {
+    EXPECT_EQ(received(sent_in_rows(wrong)).error().code, Code::kMalformed);
+  }
+  EXPECT_FALSE(received(sent_in_rows({0, 1, 2, 3, 4, 5}), limits(6, 5))) << "more pixels than allowed";
 }
 
 TEST(ImportWireTest, ErrorsAndOptionsTravel) {
