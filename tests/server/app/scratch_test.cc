@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -74,6 +76,45 @@ TEST_F(ScratchMemoryTest, WhatIsLetGoOfKeepsItsContents) {
   for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(numbers[i], static_cast<std::uint32_t>(i + 7));
 }
 
+/// The thread that looks may come late: those who say what they touch do not depend on it.
+TEST_F(ScratchMemoryTest, WhatIsResidentIsBoundedForThoseWhoSayWhatTheyTouch) {
+  constexpr std::size_t kCount = 64 << 20, kLimit = 32 << 20, kOthers = 2 << 20;
+  ScratchMemory scratch({kLimit, folder_});
+  tin::base::Array<std::uint32_t> numbers(&scratch);
+  const tin::base::Pace pace(&scratch);
+  const std::size_t before = status("RssFile");
+  numbers.reserve(kCount);
+  std::size_t most = 0;
+  constexpr std::size_t kAtOnce = tin::base::kPaceBytes / sizeof(std::uint32_t);
+  const auto note = [&] {
+    most = std::max(most, status("RssFile"));
+    pace.touched(1, tin::base::kPaceBytes);
+  };
+  for (std::size_t i = 0; i < kCount; ++i) {
+    numbers.push_back(static_cast<std::uint32_t>(i));
+    if (i % kAtOnce == 0) note();
+  }
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    sum += numbers[i] == i ? 1 : 0;
+    if (i % kAtOnce == 0) note();
+  }
+  EXPECT_EQ(sum, kCount);
+  EXPECT_LE(most, before + kLimit / 2 + kLimit / 16 + 2 * tin::base::kPaceBytes + kOthers);
+  EXPECT_GT(most, before + kLimit / 4) << "and no less is used than may be";
+}
+
+TEST_F(ScratchMemoryTest, SeveralHaveTheSumOfTheirHalves) {
+  constexpr std::size_t kBytes = 40 << 20, kLimit = 32 << 20, kOthers = 2 << 20;
+  ScratchMemory one({kLimit, folder_}), other({kLimit, folder_});
+  const std::size_t before = status("RssFile");
+  const auto first = tin::base::filled<char>(kBytes, 'a', &one),
+             second = tin::base::filled<char>(kBytes, 'b', &other);
+  EXPECT_LE(status("RssFile"), before + kLimit + kLimit / 8 + 2 * tin::base::kPaceBytes + kOthers);
+  EXPECT_EQ(std::count(first.begin(), first.end(), 'a'), kBytes);
+  EXPECT_EQ(std::count(second.begin(), second.end(), 'b'), kBytes);
+}
+
 TEST_F(ScratchMemoryTest, ThreadsMayAskAndGiveBackAtOnce) {
   ScratchMemory scratch({1 << 16, folder_});
   std::vector<std::jthread> threads;
@@ -87,6 +128,33 @@ TEST_F(ScratchMemoryTest, ThreadsMayAskAndGiveBackAtOnce) {
   }
   threads.clear();
   EXPECT_EQ(scratch.in_files(), 0U);
+}
+
+TEST_F(ScratchMemoryTest, AQuotaOfFilesIsForAllAndHoldsToTheByte) {
+  const auto quota = std::make_shared<ScratchQuota>(300'000);
+  ScratchMemory one({1000, folder_, quota}), other({1000, folder_, quota});
+  const auto refused = [](ScratchMemory& scratch, std::size_t bytes) -> std::optional<tin::base::Code> {
+    try {
+      scratch.deallocate(scratch.allocate(bytes), bytes);
+    } catch (const NoScratch& none) {
+      return none.error().code;
+    }
+    return std::nullopt;
+  };
+  EXPECT_EQ(refused(one, 300'000), std::nullopt);
+  EXPECT_EQ(refused(one, 300'001), tin::base::Code::kTooLarge);
+  {
+    const tin::base::Array<char> some(100'000, 'a', &one);
+    EXPECT_EQ(quota->taken(), 100'000U);
+    EXPECT_EQ(refused(one, 200'000), std::nullopt);
+    EXPECT_EQ(refused(one, 200'001), tin::base::Code::kTooLarge) << "it has some already";
+    EXPECT_EQ(refused(other, 200'000), std::nullopt);
+    EXPECT_EQ(refused(other, 200'001), tin::base::Code::kTooMany);
+  }
+  EXPECT_EQ(quota->taken(), 0U);
+  ScratchMemory nowhere({1000, folder_ / "nowhere", quota});
+  EXPECT_EQ(refused(nowhere, 5000), tin::base::Code::kStorage);
+  EXPECT_EQ(quota->taken(), 0U);
 }
 
 TEST_F(ScratchMemoryTest, WhereThereIsNoRoomThatIsSaid) {
