@@ -19,6 +19,7 @@ using tin::base::Error;
 using tin::base::Result;
 
 constexpr std::int64_t kMillion = 1'000'000;
+constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 constexpr std::int64_t kGiB = std::int64_t{1} << 30;
 
 // A number that can be set, and its range.
@@ -38,6 +39,8 @@ Numbers numbers_of(LimitConfig& limits) {
           {"/limits/raster_pixels", {&limits.raster_pixels, 1, kGiB}},
           {"/limits/export_pixels", {&limits.export_pixels, 1, 16 * kGiB}},
           {"/limits/memory_bytes", {&limits.memory_bytes, 0, 1024 * 1024 * kGiB}},
+          {"/limits/raster_memory_bytes", {&limits.raster_memory_bytes, kMiB, 1024 * kGiB}},
+          {"/limits/scratch_bytes", {&limits.scratch_bytes, 0, 1024 * kGiB}},
           {"/limits/vertices_per_tin", {&limits.vertices_per_tin, 1, 500 * kMillion}},
           {"/limits/tins", {&limits.tins, 1, kMillion}},
           {"/limits/edits_per_request", {&limits.edits_per_request, 1, 10 * kMillion}},

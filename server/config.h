@@ -27,9 +27,12 @@ struct LimitConfig {
   std::int64_t body_bytes_memory = 32 << 20;          // of a body that is read into memory
   std::int64_t upload_bytes = std::int64_t{2} << 30;  // of a body that goes to a file
   std::int64_t unpacked_bytes = std::int64_t{8} << 30;  // of what is read from an uploaded ZIP archive
-  std::int64_t raster_pixels = 200'000'000;           // of an uploaded raster
+  std::int64_t raster_pixels = 500'000'000;             // of an uploaded raster
   std::int64_t export_pixels = 400'000'000;           // of a raster that is made
   std::int64_t memory_bytes = 0;  // that terrains, versions and jobs take, estimated; 0: 3/4 of the machine
+  std::int64_t raster_memory_bytes =
+      512 << 20;  // of a raster's samples while it is simplified, each; the rest is in files
+  std::int64_t scratch_bytes = std::int64_t{16} << 30;  // of these files, in all; 0: everything is in memory
   std::int64_t vertices_per_tin = 50'000'000;
   std::int64_t tins = 1000;
   std::int64_t edits_per_request = 100'000;

@@ -210,7 +210,7 @@ Result<Response> create_from_json(Context& context, const Request& request) {
   }
   auto terrain = Terrain::build(*frame, placements, message->duplicates, nullptr, app::engine_threads());
   if (!terrain) return within("/vertices", terrain.error());
-  std::string source;
+  store::Pieces source;
   if (!placements.empty())
     source = app::attach_source(*terrain, app::vertices_as_source(*terrain), app::Completeness::kAllSamples);
   auto made = context.catalogue.create({message->id, message->title.value_or(""), std::move(*terrain),

@@ -38,8 +38,9 @@ tin::base::Error broken(const store::TinRecord& record, const tin::base::Error& 
 }  // namespace
 
 Result<std::unique_ptr<Catalogue>> Catalogue::open(std::unique_ptr<store::Store> store,
-                                                   const LimitConfig& limits, const HistoryConfig& history) {
-  std::unique_ptr<Catalogue> catalogue(new Catalogue(std::move(store), limits, history));
+                                                   const LimitConfig& limits, const HistoryConfig& history,
+                                                   const std::filesystem::path& scratch) {
+  std::unique_ptr<Catalogue> catalogue(new Catalogue(std::move(store), limits, history, scratch));
   auto records = catalogue->store_->list();
   if (!records) return records.error();
   for (const store::TinRecord& record : *records) {

@@ -55,32 +55,45 @@ Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplic
   return made;
 }
 
-/// What was read and the terrain that becomes of it. A raster that is simplified at once is never a terrain
-/// as a whole: working on it took 70 bytes per sample where most, and more than anybody wants, became
-/// vertices.
-std::uint64_t bytes_to_build(const gdal::Import& import) {
-  constexpr std::uint64_t kBytesPerSample = 80;
-  const auto samples = static_cast<std::uint64_t>(import.heights.size());
-  if (import.placements.empty()) return samples * kBytesPerSample;
+/// What was read and the terrain that becomes of it. Of a raster that is simplified at once: what is in
+/// memory of its heights (as read, and as worked on), its masks and the ranges of its blocks; the rest it
+/// asks for on its way.
+std::uint64_t bytes_to_build(const gdal::Import& import, const ScratchSpace& scratch) {
+  constexpr std::uint64_t kWorkedOn = sizeof(double), kPixelsPerByteOfMasks = 2;
+  const auto pixels = static_cast<std::uint64_t>(import.heights.size());
+  if (import.placements.empty())
+    return scratch.bytes_in_memory(pixels * (import.heights.bytes_each() + kWorkedOn)) +
+           pixels / kPixelsPerByteOfMasks;
   return import.placements.size() * (sizeof(tin::terrain::Placement) + kBytesPerVertex) +
-         samples * sizeof(double);
+         pixels * sizeof(double);
 }
 
 Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, const TimeBudget& budget,
-                              Progress& progress) {
+                              const std::function<bool(std::size_t)>& room, Progress& progress) {
   if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress);
   tin::simplify::Options options = *request.simplify;
   options.out_of_time = budget.question();
+  if (room) options.room = room;
   auto made = import.grid ? build_from_heights(std::move(import), options, progress)
                           : build_from_points(std::move(import), request.duplicates, options, progress);
   if (made) made->out_of_time = budget.was_spent();
   return made;
 }
 
+/// The same, until somebody asks to stop.
+store::Pieces unless_cancelled(store::Pieces pieces, const Progress& progress) {
+  return [pieces = std::move(pieces), &progress](const store::Sink& sink) {
+    return pieces([&](std::string_view piece) -> Result<void> {
+      if (progress.cancelled()) return tin::base::error(tin::base::Code::kCancelled, "Cancelled.");
+      return sink(piece);
+    });
+  };
+}
+
 }  // namespace
 
 Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const ImportRequest& request,
-                                       Progress& progress, MemoryBudget* memory) {
+                                       Progress& progress, const ImportMeans* means) {
   const TimeBudget budget(request.max_seconds);
   progress.begin_phase(0, 0.3);
   gdal::ImportOptions options = request.options;
@@ -91,14 +104,17 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
     import->frame.vertical_unit = request.vertical_unit->name;
     import->frame.vertical_unit_m = request.vertical_unit->metres;
   }
-  std::optional<MemoryBudget::Lease> lease;
-  if (memory != nullptr) {
-    auto given = memory->lease(bytes_to_build(*import));
+  std::optional<GrowingLease> lease;
+  std::function<bool(std::size_t)> room;
+  if (means != nullptr) {
+    auto given = GrowingLease::of(means->memory, bytes_to_build(*import, means->scratch));
     if (!given) return given.error();
     lease.emplace(std::move(*given));
+    room = [&lease](std::size_t bytes) { return lease->grow_to(bytes); };
   }
   progress.begin_phase(0.3, 0.9);
-  auto made = build(*std::move(import), request, budget, progress);
+  auto made = build(*std::move(import), request, budget, room, progress);
+  if (!made && lease && lease->refusal()) return *lease->refusal();
   if (made) progress.begin_phase(0.9, 1);
   return made;
 }
@@ -107,13 +123,21 @@ Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesys
                                         const ImportRequest& request, Progress& progress) {
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
   if (auto room = catalogue.memory().check(0); !room) return room.error();
-  auto made = import_terrain(file, request, progress, &catalogue.memory());
-  if (!made) return made.error();
-  const auto completeness = made->report ? Completeness::kSomeSamples : Completeness::kAllSamples;
-  std::string source = attach_source(made->terrain, made->source, completeness);
-  if (progress.cancelled()) return tin::base::error(tin::base::Code::kCancelled, "Cancelled.");
-  return catalogue.create({request.id, request.title, std::move(made->terrain), request.duplicates,
-                           std::nullopt, std::move(source)});
+  const ImportMeans means{catalogue.memory(), catalogue.scratch()};
+  const auto memory = catalogue.scratch().memory();  // outlives what lies in it
+  ImportRequest own = request;
+  if (own.simplify) own.options.memory = own.simplify->memory = memory.get();
+  try {
+    auto made = import_terrain(file, own, progress, &means);
+    if (!made) return made.error();
+    const auto completeness = made->report ? Completeness::kSomeSamples : Completeness::kAllSamples;
+    auto source = attach_source(made->terrain, std::move(made->source), completeness);
+    if (progress.cancelled()) return tin::base::error(tin::base::Code::kCancelled, "Cancelled.");
+    return catalogue.create({request.id, request.title, std::move(made->terrain), request.duplicates,
+                             std::nullopt, unless_cancelled(std::move(source), progress)});
+  } catch (const NoScratch& none) {
+    return none.error();
+  }
 }
 
 }  // namespace server::app

@@ -36,16 +36,25 @@ struct ImportedTerrain {
   std::string driver;                           // GDAL's name of the format
 };
 
+/// What an import may take of a server.
+struct ImportMeans {
+  MemoryBudget& memory;
+  const ScratchSpace& scratch;
+};
+
 /// Reads the file and triangulates its samples, or what the request leaves of them. Reports progress over all
-/// of it. What it takes is taken from `memory`, if that is given, until it returns. Errors: as
-/// gdal::import_file, Terrain::build and simplify::simplify; kTooMany (no memory).
+/// of it. What it takes is taken from `means`, if they are given, until it returns; where the heights of a
+/// raster lie that is simplified, the request says. Errors: as gdal::import_file, Terrain::build and
+/// simplify::simplify; kTooLarge, kTooMany (no memory). Throws NoScratch.
 tin::base::Result<ImportedTerrain> import_terrain(const std::filesystem::path& file,
                                                   const ImportRequest& request, tin::base::Progress& progress,
-                                                  MemoryBudget* memory = nullptr);
+                                                  const ImportMeans* means = nullptr);
 
-/// Reads the file, triangulates its samples and stores the TIN with them. Reports progress over all of it.
-/// Errors: as gdal::import_file, Terrain::build, simplify::simplify and Catalogue::create; then nothing is
-/// left behind.
+/// Reads the file, triangulates its samples and stores the TIN with them. Reports progress over all of it. A
+/// raster that is simplified may be larger than memory: what is too much of its samples lies in the
+/// catalogue's scratch space. Errors: as gdal::import_file, Terrain::build, simplify::simplify and
+/// Catalogue::create; kTooLarge, kTooMany, kNoSpace (no room for temporary files); then nothing is left
+/// behind.
 tin::base::Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
                                                    const ImportRequest& request,
                                                    tin::base::Progress& progress);

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <fstream>
 
+#include "server/app/scratch.h"
+
 namespace server::app {
 namespace {
 
@@ -26,7 +28,10 @@ std::uint64_t estimated_bytes(const tin::terrain::Terrain& terrain) {
 
 std::uint64_t estimated_bytes(const tin::terrain::SourceSamples& source) {
   const auto of = [](const auto& array) { return std::uint64_t{array.size()} * sizeof(array[0]); };
-  return std::visit(of, source.heights().stored) + of(source.positions()) + of(source.valid());
+  const auto* const scratch = dynamic_cast<const ScratchMemory*>(source.heights().memory());
+  const std::uint64_t heights =
+      scratch != nullptr ? scratch->in_memory() : std::visit(of, source.heights().stored);
+  return heights + of(source.positions()) + of(source.valid());
 }
 
 std::uint64_t default_memory_limit() {
@@ -48,6 +53,35 @@ tin::base::Result<void> MemoryBudget::check(std::uint64_t bytes) const {
   if (used() + bytes <= limit_) return {};
   return tin::base::error(tin::base::Code::kTooMany,
                           "The terrains on this server take all the memory that it may have at the moment.");
+}
+
+namespace {
+
+/// That work takes more than a server may have, whatever else it holds.
+tin::base::Error too_large(std::uint64_t bytes, std::uint64_t limit) {
+  // Rounded apart, so that the one reads as more than the other.
+  return tin::base::error(tin::base::Code::kTooLarge, "This takes " + std::to_string((bytes >> 20) + 1) +
+                                                          " MiB of memory and more; the limit here is " +
+                                                          std::to_string(limit >> 20) + " MiB.");
+}
+
+}  // namespace
+
+tin::base::Result<GrowingLease> GrowingLease::of(MemoryBudget& budget, std::uint64_t fixed) {
+  if (fixed > budget.limit()) return too_large(fixed, budget.limit());
+  auto lease = budget.lease(fixed);
+  if (!lease) return lease.error();
+  return GrowingLease(budget, fixed, *std::move(lease));
+}
+
+bool GrowingLease::grow_to(std::uint64_t bytes) {
+  lease_.resize(fixed_ + bytes);
+  if (fixed_ + bytes > budget_->limit()) {
+    refusal_ = too_large(fixed_ + bytes, budget_->limit());
+  } else if (auto room = budget_->check(0); !room) {
+    refusal_ = room.error();
+  }
+  return !refusal_;
 }
 
 std::uint64_t MemoryBudget::used() const {

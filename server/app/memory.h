@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "tin/base/result.h"
@@ -70,6 +71,28 @@ class MemoryBudget {
   mutable std::mutex mutex_;
   mutable std::int64_t asked_ms_ = -1;
   mutable std::uint64_t held_then_ = 0;
+};
+
+/// A lease for work that finds out on its way how much it takes. For one thread at a time.
+class GrowingLease {
+ public:
+  /// `fixed` is what it takes in any case. Errors: kTooLarge (it is above the limit alone), kTooMany.
+  static tin::base::Result<GrowingLease> of(MemoryBudget& budget, std::uint64_t fixed);
+
+  /// Whether there is room for so many bytes beside what is fixed; from then on they are taken, or what could
+  /// not be had is remembered.
+  bool grow_to(std::uint64_t bytes);
+  /// Why there was no room.
+  const std::optional<tin::base::Error>& refusal() const { return refusal_; }
+
+ private:
+  GrowingLease(MemoryBudget& budget, std::uint64_t fixed, MemoryBudget::Lease lease)
+      : budget_(&budget), fixed_(fixed), lease_(std::move(lease)) {}
+
+  MemoryBudget* budget_;
+  std::uint64_t fixed_;
+  MemoryBudget::Lease lease_;
+  std::optional<tin::base::Error> refusal_;
 };
 
 }  // namespace server::app

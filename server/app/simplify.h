@@ -49,8 +49,8 @@ struct Simplified {
   bool edited_meanwhile = false;
 };
 
-/// Errors: as simplify::simplify, Catalogue::create, Tin::source and Tin::land; a cancelled or failed job
-/// changes nothing.
+/// Errors: as simplify::simplify, Catalogue::create, Tin::source and Tin::land; kTooLarge, kTooMany, kNoSpace
+/// (no memory, or no room for temporary files); a cancelled or failed job changes nothing.
 tin::base::Result<Simplified> simplify_tin(Catalogue& catalogue, const SimplifyRequest& request,
                                            tin::base::Progress& progress);
 

@@ -12,11 +12,13 @@ using tin::terrain::SourceKind;
 using tin::terrain::SourceSamples;
 using tin::terrain::Terrain;
 
-std::string attach_source(Terrain& terrain, const SourceSamples& source, Completeness completeness) {
+store::Pieces attach_source(Terrain& terrain, SourceSamples source, Completeness completeness) {
   Amendments amendments(source.is_raster() ? SourceKind::kRaster : SourceKind::kPoints);
   if (completeness == Completeness::kSomeSamples) amendments.set_thinned();
   terrain.set_amendments(std::move(amendments));
-  return tin::codec::encode_source(source);
+  return [source = std::move(source)](const store::Sink& sink) {
+    return tin::codec::encode_source(source, sink);
+  };
 }
 
 SourceSamples vertices_as_source(const Terrain& terrain) {

@@ -143,16 +143,24 @@ Result<void> Tin::retire() {
   return done ? Result<void>() : Result<void>(done.error());
 }
 
-Result<std::string> Tin::source_bytes() const {
-  auto bytes = store_.load_source(id());
+Result<void> Tin::read_source(const store::MeasuredSink& sink) const {
+  auto done = store_.read_source(id(), sink);
   const std::shared_lock lock(mutex_);
   if (retired_)
     return error(Code::kNotFound,
                  "The TIN \"" + id() + "\" has been deleted.");  // what was read may be another TIN's by now
-  return bytes;
+  return done;
 }
 
-Result<std::shared_ptr<const tin::terrain::SourceSamples>> Tin::source() const {
+store::Pieces Tin::source_bytes() const {
+  const auto kind = read([](const Terrain& terrain, std::uint64_t) { return terrain.amendments().kind(); });
+  if (kind == tin::terrain::SourceKind::kNone) return {};
+  return [this](const store::Sink& sink) {
+    return read_source([&sink](std::string_view piece, std::uint64_t) { return sink(piece); });
+  };
+}
+
+Result<std::shared_ptr<const tin::terrain::SourceSamples>> Tin::source(const ScratchSpace& space) const {
   using Source = std::shared_ptr<const tin::terrain::SourceSamples>;
   const auto [kind, grid] = read([](const Terrain& terrain, std::uint64_t) {
     return std::pair(terrain.amendments().kind(), terrain.shared_source_grid());
@@ -160,12 +168,27 @@ Result<std::shared_ptr<const tin::terrain::SourceSamples>> Tin::source() const {
   if (kind == tin::terrain::SourceKind::kNone) return Source();
   const std::lock_guard reading(source_mutex_);
   if (Source present = source_.lock()) return present;
-  const auto bytes = source_bytes();
-  if (!bytes) return bytes.error();
-  auto decoded =
-      tin::codec::decode_source(*bytes, kind == tin::terrain::SourceKind::kRaster ? grid : nullptr);
+  // With the memory that its heights lie in, which outlives them so.
+  struct Held {
+    std::unique_ptr<ScratchMemory> memory;
+    std::optional<tin::terrain::SourceSamples> samples;
+  };
+  const auto held = std::make_shared<Held>(Held{space.memory(), std::nullopt});
+  tin::base::Array<char> bytes(held->memory.get());
+  const tin::base::Pace pace(held->memory.get());
+  const auto done = read_source([&](std::string_view piece, std::uint64_t whole) -> Result<void> {
+    if (bytes.empty()) bytes.reserve(whole);
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+    pace.touched(1, piece.size());
+    return {};
+  });
+  if (!done) return done.error();
+  auto decoded = tin::codec::decode_source({bytes.data(), bytes.size()},
+                                           kind == tin::terrain::SourceKind::kRaster ? grid : nullptr,
+                                           held->memory.get());
   if (!decoded) return decoded.error();
-  Source source = std::make_shared<const tin::terrain::SourceSamples>(*std::move(decoded));
+  held->samples.emplace(*std::move(decoded));
+  Source source(held, &*held->samples);
   source_ = source;
   const std::lock_guard counted(past_mutex_);
   source_in_hand_ = source;

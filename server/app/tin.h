@@ -24,6 +24,7 @@
 #include "server/app/changed_areas.h"
 #include "server/app/fair_mutex.h"
 #include "server/app/memory.h"
+#include "server/app/scratch_space.h"
 #include "server/app/thinning.h"
 #include "server/app/version.h"
 #include "server/app/world_edit.h"
@@ -139,11 +140,13 @@ class Tin {
                                  const store::RevisionInfo& info);
 
   /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store
-  /// when nobody else has them in hand, and given back when the last one lets go. Errors: kNotFound
-  /// (retired), kStorage, kMalformed.
-  tin::base::Result<std::shared_ptr<const tin::terrain::SourceSamples>> source() const;
-  /// The same as bytes, for another TIN; empty where none are kept. Errors: kNotFound (retired), kStorage.
-  tin::base::Result<std::string> source_bytes() const;
+  /// when nobody else has them in hand, and given back when the last one lets go; where `space` says if they
+  /// are many. Errors: kNotFound (retired), kStorage, kMalformed. Throws NoScratch.
+  tin::base::Result<std::shared_ptr<const tin::terrain::SourceSamples>> source(
+      const ScratchSpace& space) const;
+  /// The same as bytes, for another TIN; empty where none are kept. Giving them may fail with kNotFound
+  /// (retired), kStorage. Requires: this outlives them.
+  store::Pieces source_bytes() const;
 
   /// Errors: kNotFound (retired), kStorage, kNoSpace.
   tin::base::Result<void> rename(std::string_view title);
@@ -174,6 +177,8 @@ class Tin {
 
   // Above so many steps, doing a batch again costs readers more than waiting for the disk with it.
   static constexpr std::size_t kDoneTwice = 256;
+
+  tin::base::Result<void> read_source(const store::MeasuredSink& sink) const;
 
   tin::base::Error too_many_vertices() const;
   tin::base::Result<Terrain::Applied> apply(Terrain& terrain, const LatticeEdits& edits, Write& write) const;

@@ -114,6 +114,7 @@ void clear_temporary_files(const std::filesystem::path& data_dir) {
   std::error_code ignored;
   std::filesystem::remove_all(data_dir / "uploads", ignored);
   std::filesystem::remove_all(data_dir / "exports", ignored);
+  std::filesystem::remove_all(data_dir / "scratch", ignored);
 }
 
 std::string url(const Listen& listen, std::uint16_t port) {
@@ -149,7 +150,8 @@ int serve(const ServeArguments& arguments) {
   auto store = store::open_sqlite_store(config->data_dir);
   if (!store) return fail(store.error());
   clear_temporary_files(config->data_dir);
-  const auto catalogue = app::Catalogue::open(std::move(*store), config->limits, config->history);
+  const auto catalogue =
+      app::Catalogue::open(std::move(*store), config->limits, config->history, config->data_dir / "scratch");
   if (!catalogue) return fail(catalogue.error());
   app::StoredJobs memory((*catalogue)->store());
   const auto earlier = memory.recall();

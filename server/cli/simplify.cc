@@ -105,6 +105,8 @@ int simplify(const SimplifyArguments& arguments) {
   app::ScratchMemory scratch({arguments.memory << 20, arguments.scratch.empty() ? folder_of(arguments.output)
                                                                                 : fs::path(arguments.scratch)});
   request->options.memory = request->simplify->memory = &scratch;
+  // Of what cannot wait in files. Better an error than a machine that runs out of memory.
+  request->simplify->room = [most = app::default_memory_limit()](std::size_t bytes) { return bytes <= most; };
   tin::base::Progress progress;
   const CancelOnSignal cancelling(progress);
   Result<void> written;
@@ -114,7 +116,7 @@ int simplify(const SimplifyArguments& arguments) {
     made.emplace(app::import_terrain(arguments.input, *request, progress));
     if (*made) written = write_output((*made)->terrain, arguments.output, progress);
   } catch (const app::NoScratch& none) {
-    return fail(arguments.input, error(Code::kStorage, none.what()));
+    return fail(arguments.input, none.error());
   } catch (const std::bad_alloc&) {
     return fail(arguments.input, error(Code::kTooLarge, "there is not enough memory"));
   }

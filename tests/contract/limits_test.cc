@@ -218,6 +218,56 @@ TEST(LimitsTest, MemoryOfVersionsThatReadersHold) {
   EXPECT_EQ(status, 200);
 }
 
+/// Of 600 x 600 heights 720,000 bytes wait in a file as they were read, and 4 a pixel as they are worked on,
+/// with room for three more: more than half of what may be in memory, either.
+TEST(LimitsTest, TemporaryFilesOfARasterThatIsSimplified) {
+  constexpr std::int64_t kNeeded = 2 * 360'000 + 4 * (360'000 + 3);
+  const std::string grid = ascii_grid(600, 600), query = "/tins?id=t&tolerance=3&effort=fast";
+  for (const std::int64_t limit : {std::int64_t{0}, kNeeded, kNeeded - 1}) {
+    TestServer server([&](server::Config& config) {
+      config.limits.raster_memory_bytes = 1 << 20;
+      config.limits.scratch_bytes = limit;
+    });
+    const std::string before = server.state();
+    const RawAnswer answer = server.upload(query, "text/plain", grid);
+    EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+    if (limit == kNeeded - 1) {
+      expect_too_large(answer);
+      EXPECT_EQ(server.state(), before);
+      continue;
+    }
+    ASSERT_EQ(answer.status, 201) << answer.body;
+    // The source comes back from its file by the same way.
+    EXPECT_EQ(
+        server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","tolerance":2}})").status,
+        200);
+  }
+}
+
+/// What work takes beside a raster's samples is asked for on its way.
+TEST(LimitsTest, MemoryOfASimplification) {
+  const std::string grid = ascii_grid(300, 300);
+  const auto asked = [&](std::int64_t megabytes, const std::string& query) {
+    TestServer server([&](server::Config& config) { config.limits.memory_bytes = megabytes << 20; });
+    const std::string before = server.state();
+    const RawAnswer answer = server.upload("/tins?id=t&effort=fast&tolerance=" + query, "text/plain", grid);
+    if (answer.status == 413) {
+      expect_too_large(answer);
+      EXPECT_EQ(server.state(), before);
+    } else {
+      EXPECT_EQ(answer.status, 201) << answer.body;
+    }
+    return answer.status;
+  };
+  // 90,000 samples: a few megabytes, 144 bytes each for their triangulation, 256 for each vertex of a TIN of
+  // them all.
+  EXPECT_EQ(asked(8, "50"), 201);
+  EXPECT_EQ(asked(8, "50&against=surface"), 413);
+  EXPECT_EQ(asked(40, "50&against=surface"), 201);
+  EXPECT_EQ(asked(8, "0"), 413);
+  EXPECT_EQ(asked(64, "0"), 201);
+}
+
 TEST(LimitsTest, PageSize) {
   TestServer server([](server::Config& config) {
     config.limits.page_size = 3;

@@ -18,7 +18,8 @@ TestServer::TestServer(const std::function<void(server::Config&)>& adjust) {
   if (adjust) adjust(config_);
   auto store = server::store::open_sqlite_store(config_.data_dir);
   if (!store) throw std::runtime_error(store.error().message);
-  auto catalogue = server::app::Catalogue::open(std::move(*store), config_.limits, config_.history);
+  auto catalogue = server::app::Catalogue::open(std::move(*store), config_.limits, config_.history,
+                                                folder_.path() / "scratch");
   if (!catalogue) throw std::runtime_error(catalogue.error().message);
   catalogue_ = std::move(*catalogue);
   jobs_ = std::make_unique<server::jobs::JobQueue>(server::jobs::JobLimits{
@@ -110,7 +111,7 @@ std::set<std::string> TestServer::leftovers() const {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   for (;;) {
     std::set<std::string> found;
-    for (const char* folder : {"uploads", "exports"}) {
+    for (const char* folder : {"uploads", "exports", "scratch"}) {
       std::error_code none;
       for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / folder, none))
         found.insert(entry.path().string());

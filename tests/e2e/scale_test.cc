@@ -75,6 +75,47 @@ TEST_F(ScaleTest, WhatWaitsInFilesGivesTheSameTin) {
   }
 }
 
+/// A server makes the same TIN of what does not fit into the memory that a raster may have, keeps the
+/// samples, and is held to them after a restart.
+TEST_F(ScaleTest, AServerMakesTheSameTinOfARasterLargerThanMemory) {
+  std::ofstream(folder_.path() / "small.json") << R"({"limits":{"raster_memory_bytes":1048576}})";
+  const std::vector<std::string> small{"--config", folder_.path() / "small.json"};
+  for (const GDALDataType type : {GDT_Int16, GDT_Float32}) {
+    const std::string input = raster(1400, type), id = type == GDT_Int16 ? "whole" : "real";
+    std::string straight, copied;
+    const auto digest = [&](const std::string& tin) {
+      return served_->get("/tins/" + tin).at("digest").get<std::string>();
+    };
+    for (const auto& more : {std::vector<std::string>(), small}) {
+      start(more);
+      const support::RawAnswer made = served_->upload("?id=" + id + "&tolerance=10&effort=fast", input);
+      ASSERT_EQ(made.status, 201) << made.body;
+      const std::string first = digest(id);
+      ASSERT_EQ(served_->stop(), 0);
+      start(more);
+      EXPECT_EQ(digest(id), first);
+      EXPECT_EQ(served_->simplify({{"tin", id}, {"tolerance", 6}, {"effort", "fast"}, {"as", "copy"}})
+                    .at("certifiedAgainst"),
+                "original samples");
+      const Json result = served_->simplify({{"tin", "copy"}, {"tolerance", 4}, {"effort", "fast"}});
+      EXPECT_LE(result.at("maxError"), 4);
+      EXPECT_EQ(result.at("certifiedAgainst"), "original samples");
+      if (straight.empty()) {
+        straight = first;
+        copied = digest("copy");
+      } else {
+        EXPECT_EQ(first, straight);
+        EXPECT_EQ(digest("copy"), copied);
+        EXPECT_TRUE(fs::is_empty(data() / "scratch"));
+      }
+      for (const auto& tin : {id, std::string("copy")})
+        ASSERT_EQ(served_->http().remove("/tins/" + tin).status, 204);
+      ASSERT_EQ(served_->stop(), 0);
+    }
+    fs::remove(input);
+  }
+}
+
 TEST_F(ScaleTest, WithoutRoomForFilesNothingIsWritten) {
   const std::string input = raster(800, GDT_Int16);
   const std::string said = simplified(input, {"--memory", "1", "--scratch", "/nowhere"});

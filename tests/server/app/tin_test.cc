@@ -424,11 +424,15 @@ TEST(TinMemoryTest, ASourceCountsWhileSomebodyHasItInHand) {
   FailingStore store;
   Terrain terrain = grid_terrain(20);
   const auto samples = server::app::vertices_as_source(terrain);
-  store.source = server::app::attach_source(terrain, samples, server::app::Completeness::kAllSamples);
+  const auto give = server::app::attach_source(terrain, samples, server::app::Completeness::kAllSamples);
+  ASSERT_TRUE(give([&store](std::string_view piece) -> tin::base::Result<void> {
+    store.source += piece;
+    return {};
+  }));
   const Tin tin({{"t", "T", 5}, std::move(terrain), Duplicates::kReject, std::nullopt, 1}, store, 500);
   const std::uint64_t alone = tin.held_bytes();
   {
-    const auto source = tin.source().value();
+    const auto source = tin.source(server::app::ScratchSpace({})).value();
     const std::uint64_t bytes = server::app::estimated_bytes(*source);
     EXPECT_GE(bytes, 400 * sizeof(tin::exact::Point));
     EXPECT_EQ(tin.held_bytes(), alone + bytes);

@@ -113,7 +113,7 @@ TEST_F(SqliteStoreTest, DamagedAndMissingSourcesAreReported) {
 TEST_F(SqliteStoreTest, ASourceThatEndsOnItsWayLeavesNoFile) {
   const auto broken = [](const Sink& sink) -> tin::base::Result<void> {
     if (auto first = sink("some"); !first) return first;
-    return tin::base::error(Code::kCancelled, "");
+    return tin::base::error(Code::kCancelled, "ended");
   };
   EXPECT_TRUE(fails(store_->create_tin({"b", "", 0}, 1, "b", broken), Code::kCancelled));
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "files"));

@@ -184,14 +184,14 @@ TEST_P(StoreTest, ASourceComesAndGoesInPieces) {
   const auto ended =
       store_->read_source("alps", [&](std::string_view, std::uint64_t) -> tin::base::Result<void> {
         ++taken;
-        return tin::base::error(Code::kCancelled, "");
+        return tin::base::error(Code::kCancelled, "ended");
       });
   EXPECT_TRUE(fails(ended, Code::kCancelled));
   EXPECT_EQ(taken, 1);
   // What ends on its way was never there.
   const auto broken = [&piece](const Sink& sink) -> tin::base::Result<void> {
     if (auto first = sink(piece); !first) return first;
-    return tin::base::error(Code::kCancelled, "");
+    return tin::base::error(Code::kCancelled, "ended");
   };
   EXPECT_TRUE(fails(store_->create_tin({"b", "", 0}, 1, "b", broken), Code::kCancelled));
   EXPECT_TRUE(fails(store_->load("b"), Code::kNotFound));
