@@ -9,6 +9,7 @@
 
 #include "tests/tin/simplify/runs.h"
 #include "tests/tin/simplify/terrains.h"
+#include "tin/simplify/footprint.h"
 #include "tin/terrain/heights_builder.h"
 
 namespace {
