@@ -144,6 +144,9 @@ class Residents {
 /// What the system maps at a touch beside what was touched, at most: a read fault maps 64 KiB about it.
 constexpr std::size_t kAround = std::size_t{2} << 16;
 
+/// Of the files' pages that may be resident: with less, work spends its time on letting go of them.
+constexpr std::uint64_t kLeastShare = std::uint64_t{8} << 20;
+
 /// `own` bytes are the asker's already.
 void reserve(ScratchQuota& quota, std::uint64_t bytes, std::uint64_t own) {
   if (quota.take(bytes)) return;
@@ -162,6 +165,8 @@ ScratchMemory::~ScratchMemory() {
   TIN_CHECK(whole_ == 0 && in_files_ == 0);
 }
 
+std::uint64_t ScratchMemory::share() const { return std::max(limits_.bytes / 2, kLeastShare); }
+
 void ScratchMemory::touched(std::size_t pieces, std::size_t bytes_each) {
   if (in_files() > 0) Residents::all().grow(pieces * (bytes_each + kAround));
 }
@@ -177,7 +182,7 @@ void* ScratchMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
   }
   if (limits_.quota) reserve(*limits_.quota, bytes, in_files());
   void* const memory = map_file(bytes);
-  Residents::all().add(memory, bytes, this, limits_.bytes / 2);
+  Residents::all().add(memory, bytes, this, share());
   const std::lock_guard lock(mutex_);
   in_files_ += bytes;
   if (watcher_.joinable()) return memory;
@@ -191,7 +196,7 @@ void* ScratchMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
 }
 
 void ScratchMemory::do_deallocate(void* memory, std::size_t bytes, std::size_t alignment) {
-  if (!Residents::all().remove(memory, this, limits_.bytes / 2)) {
+  if (!Residents::all().remove(memory, this, share())) {
     const std::lock_guard lock(mutex_);
     whole_ -= bytes;
     std::pmr::new_delete_resource()->deallocate(memory, bytes, alignment);
@@ -219,7 +224,7 @@ void* ScratchMemory::map_file(std::size_t bytes) {
 
 std::uint64_t ScratchMemory::in_memory() const {
   const std::lock_guard lock(mutex_);
-  return whole_ + std::min(in_files(), limits_.bytes / 2);
+  return whole_ + std::min(in_files(), share());
 }
 
 }  // namespace server::app

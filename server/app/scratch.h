@@ -86,6 +86,7 @@ class ScratchMemory final : public tin::base::PacedMemory {
   bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
 
   void* map_file(std::size_t bytes);
+  std::uint64_t share() const;  // of files' pages in memory
 
   const ScratchLimits limits_;
   mutable std::mutex mutex_;
