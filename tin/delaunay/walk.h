@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "tin/exact/point.h"
@@ -85,10 +86,9 @@ inline int next_edge(Stop& s) {
   return mesh::next3(s.apex);
 }
 
-/// Stands in the finite triangle `start`, and asks for those around; returns the first edge to cross or -1.
+/// Stands in the finite triangle `start`; returns the first edge to cross or -1.
 inline int begin_walk(const mesh::Mesh& mesh, exact::Point goal, mesh::TriangleSlot start, Stop& s) {
   const auto& first = mesh.triangle(start).vertices;
-  for (const mesh::HalfEdge e : mesh.triangle(start).neighbours) mesh.prefetch_with_points(e.triangle());
   s = {Stop::Kind::kInside, start, 0, corner_at(mesh, first[2], goal), corner_at(mesh, first[1], goal),
        corner_at(mesh, first[0], goal), 0, 0, 0, 0};
   s.ba = cross(s.b, s.a);
@@ -106,13 +106,9 @@ inline void go_over(const mesh::Mesh& mesh, int edge, Stop& s) {
   ++s.steps;
 }
 
-/// Looks at the third corner, and returns the next edge to cross or -1. Both triangles that may come next are
-/// asked for before it is known which: they arrive while this one's corner does, and if the walk ends here they
-/// are what an insertion looks at first.
+/// Looks at the third corner, and returns the next edge to cross or -1.
 inline int arrive(const mesh::Mesh& mesh, exact::Point goal, Stop& s) {
   const mesh::VertexSlot apex = mesh.vertex(s.triangle, s.apex);
-  mesh.prefetch_with_points(mesh.twin(s.triangle, mesh::next3(s.apex)).triangle());
-  mesh.prefetch_with_points(mesh.twin(s.triangle, mesh::prev3(s.apex)).triangle());
   s.c = corner_at(mesh, apex, goal);
   if (apex != mesh::kInfinite) return next_edge(s);
   s.kind = Stop::Kind::kOutside;
@@ -120,9 +116,17 @@ inline int arrive(const mesh::Mesh& mesh, exact::Point goal, Stop& s) {
 }
 
 /// Walks to `goal` from the finite triangle `start`. Const and safe beside other readers.
+///
+/// Each triangle that may come next is asked for before it is known which: they arrive while this one's corners
+/// do, and where the walk ends they are what an insertion looks at first. (Not where others change the mesh: links
+/// over edges between foreign vertices may be read only by those who own them.)
 template <class Owner>
 Stop walk(const mesh::Mesh& mesh, exact::Point goal, mesh::TriangleSlot start, const Owner& owner,
           std::uint32_t limit = kNoLimit) {
+  constexpr bool kAsks = std::is_same_v<Owner, Everywhere>;
+  if constexpr (kAsks) {
+    for (const mesh::HalfEdge e : mesh.triangle(start).neighbours) mesh.prefetch_with_points(e.triangle());
+  }
   Stop s;
   for (int edge = begin_walk(mesh, goal, start, s); edge >= 0; edge = arrive(mesh, goal, s)) {
     if (s.steps == limit || (!owner.owns(s.a.vertex) && !owner.owns(s.b.vertex))) {
@@ -130,6 +134,10 @@ Stop walk(const mesh::Mesh& mesh, exact::Point goal, mesh::TriangleSlot start, c
       break;
     }
     go_over(mesh, edge, s);
+    if constexpr (kAsks) {
+      mesh.prefetch_with_points(mesh.twin(s.triangle, mesh::next3(s.apex)).triangle());
+      mesh.prefetch_with_points(mesh.twin(s.triangle, mesh::prev3(s.apex)).triangle());
+    }
   }
   return s;
 }
