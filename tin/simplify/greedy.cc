@@ -33,7 +33,7 @@ Greedy::End Greedy::run(std::size_t budget, const Phase& phase, const std::funct
 
 bool Greedy::queue_all(const Phase& phase, const std::function<bool(TriangleSlot)>& suspect) {
   const std::uint32_t slots = patch_.mesh().triangle_slots();
-  wishes_.assign(slots, {});
+  stamps_.assign(slots, 0);
   for (std::uint32_t i = 0; i < slots; ++i) {
     if (phase.cancelled()) return false;
     if (suspect && !suspect(TriangleSlot(i))) continue;
@@ -52,28 +52,20 @@ std::optional<mesh::VertexSlot> Greedy::grant(const Candidate& wish) {
 }
 
 void Greedy::queue(TriangleSlot t) {
-  if (t.value() >= wishes_.size()) wishes_.resize(t.value() + 1);
-  wishes_[t.value()] = {};
+  if (t.value() >= stamps_.size()) stamps_.resize(t.value() + 1);
+  const std::uint32_t stamp = ++stamps_[t.value()];
   if (patch_.mesh().is_infinite(t)) return;
   const Scan scan = patch_.scan(t, target_, Depth::kWorst);
   if (!scan.over) return;
-  wishes_[t.value()] = {scan.error, scan.sample};
-  heap_.push_back({scan.error, scan.sample, t.value()});
-  std::push_heap(heap_.begin(), heap_.end());
+  queue_.push({scan.error, scan.sample, t.value(), stamp});
 }
 
 /// A triangle's wish is granted or refused once.
-std::optional<Greedy::Candidate> Greedy::take_worst() {
-  while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end());
-    const Candidate candidate = heap_.back();
-    heap_.pop_back();
-    Wish& wish = wishes_[candidate.triangle];
-    if (wish.sample != candidate.sample || wish.error != candidate.error) continue;
-    wish = {};
-    return candidate;
-  }
-  return std::nullopt;
+std::optional<Candidate> Greedy::take_worst() {
+  const auto worst =
+      queue_.pop([this](const Candidate& candidate) { return stamps_[candidate.triangle] == candidate.stamp; });
+  if (worst) ++stamps_[worst->triangle];
+  return worst;
 }
 
 void Greedy::note_state(double error) {

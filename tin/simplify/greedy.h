@@ -10,6 +10,7 @@
 
 #include "tin/simplify/patch.h"
 #include "tin/simplify/phase.h"
+#include "tin/simplify/worst_first.h"
 
 namespace tin::simplify {
 
@@ -20,7 +21,7 @@ class Greedy {
   enum class End { kTargetMet, kBudgetSpent, kCancelled };
 
   /// Requires: target finite and >= 0. Borrows `patch`.
-  Greedy(Patch& patch, double target) : patch_(patch), target_(target) {}
+  Greedy(Patch& patch, double target) : patch_(patch), target_(target), queue_(target) {}
 
   /// Inserts until every sample over the patch's own triangles is within the target (exactly), but for those that
   /// could not become vertices without touching foreign triangles; or until `budget` vertices stand. With `suspect`, only the
@@ -32,16 +33,6 @@ class Greedy {
   double return_to_best();
 
  private:
-  struct Candidate {
-    double error;
-    SampleIndex sample;
-    std::uint32_t triangle;
-    /// For a heap with the largest error on top, then the smallest sample.
-    friend bool operator<(const Candidate& a, const Candidate& b) {
-      return a.error != b.error ? a.error < b.error : a.sample > b.sample;
-    }
-  };
-
   bool queue_all(const Phase& phase, const std::function<bool(mesh::TriangleSlot)>& suspect);
   std::optional<mesh::VertexSlot> grant(const Candidate& wish);
   void queue(mesh::TriangleSlot t);
@@ -50,12 +41,8 @@ class Greedy {
 
   Patch& patch_;
   double target_;
-  std::vector<Candidate> heap_;
-  struct Wish {
-    double error = 0;
-    SampleIndex sample = kNoSample;
-  };
-  std::vector<Wish> wishes_;  // of each triangle: other candidates are void
+  WorstFirst queue_;
+  std::vector<std::uint32_t> stamps_;  // of each triangle: candidates with an older one are void
   std::vector<mesh::VertexSlot> inserted_;
   double best_error_ = std::numeric_limits<double>::infinity();
   std::size_t best_count_ = 0;  // of inserted_
