@@ -287,6 +287,7 @@ Scan WholeGridSamples::scan_cells(const Site& a, const Site& b, const Site& c, d
   const std::int64_t stop = to_end ? INT64_MAX : static_cast<std::int64_t>(surely_over);
   const WholeHeights heights{heights_.data(), grid().width};
   const auto scan_all = [&] {
+    if (area <= kSmallArea && !any_height_) return scan_beside_corners(heights, plane);
     const auto [low, high] = std::minmax({a.row, b.row, c.row});
     if (high - low >= kTallRows) return scan_by_blocks(heights, blocks_, plane, stop, pace());
     return doubles_suffice(plane, largest_) ? scan_by_doubles(heights, plane, stop) : scan_by_integers(heights, plane, stop);

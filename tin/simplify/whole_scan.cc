@@ -9,6 +9,47 @@
 
 namespace tin::simplify {
 
+namespace {
+
+/// Looks at one more cell.
+void look_at(GridPoint cell, const WholeHeights& heights, const WholePlane& plane, WorstCell& worst) {
+  const std::uint32_t at = static_cast<std::uint32_t>(cell.y) * static_cast<std::uint32_t>(heights.width) +
+                           static_cast<std::uint32_t>(cell.x);
+  const std::int32_t z = heights.z[at];
+  const std::int64_t difference =
+      plane.base + (cell.x - plane.a.x) * plane.slope_x + (cell.y - plane.a.y) * plane.slope_y - plane.area * z;
+  const std::int64_t distance = difference < 0 ? -difference : difference;
+  if (z == WholeHeights::kVoid || distance < worst.distance || (distance == worst.distance && at > worst.at)) return;
+  worst = {distance, at};
+}
+
+bool is_multiple(GridPoint from, GridPoint to, std::int32_t parts) {
+  return (to.x - from.x) % parts == 0 && (to.y - from.y) % parts == 0;
+}
+
+}  // namespace
+
+WorstCell scan_beside_corners(const WholeHeights& heights, const WholePlane& plane) {
+  WorstCell worst{0, UINT32_MAX};
+  const GridPoint a = plane.a, b = plane.b, c = plane.c;
+  if (plane.area == 2) {  // the middle of one side
+    const bool of_ab = is_multiple(a, b, 2), of_bc = !of_ab && is_multiple(b, c, 2);
+    const GridPoint from = of_bc ? c : a, to = of_ab || of_bc ? b : c;
+    look_at({(from.x + to.x) / 2, (from.y + to.y) / 2}, heights, plane, worst);
+  } else if (plane.area == 3) {  // the centre, or both thirds of one side
+    const GridPoint sum{a.x + b.x + c.x, a.y + b.y + c.y};
+    if (sum.x % 3 == 0 && sum.y % 3 == 0) {
+      look_at({sum.x / 3, sum.y / 3}, heights, plane, worst);
+    } else {
+      const bool of_ab = is_multiple(a, b, 3), of_bc = !of_ab && is_multiple(b, c, 3);
+      const GridPoint from = of_bc ? c : a, to = of_ab || of_bc ? b : c;
+      look_at({(2 * from.x + to.x) / 3, (2 * from.y + to.y) / 3}, heights, plane, worst);
+      look_at({(from.x + 2 * to.x) / 3, (from.y + 2 * to.y) / 3}, heights, plane, worst);
+    }
+  }
+  return worst.distance == 0 ? WorstCell{} : worst;
+}
+
 WorstCell scan_by_integers(const WholeHeights& heights, const WholePlane& plane, std::int64_t stop) {
   WorstCell worst;
   visit_spans(plane.a, plane.b, plane.c, [&](std::int32_t row, std::int32_t first, std::int32_t last) {

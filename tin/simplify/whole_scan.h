@@ -31,6 +31,12 @@ struct WorstCell {
   std::uint32_t at = 0;  // row * width + column; of equals the first
 };
 
+/// Such small triangles hold two cells at most beside their corners (Pick's theorem: interior points + half of those on the border
+/// - 1 are the area).
+inline constexpr std::int64_t kSmallArea = 3;
+/// Looks at these cells, found without rows. Requires: plane.area <= kSmallArea; the corners are at distance 0.
+WorstCell scan_beside_corners(const WholeHeights& heights, const WholePlane& plane);
+
 /// Looks at the cells of the closed triangle; may end once a distance is above `stop`.
 WorstCell scan_by_integers(const WholeHeights& heights, const WholePlane& plane, std::int64_t stop);
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <vector>
 
@@ -107,6 +108,31 @@ TEST_F(WholeScanTest, BothFindTheFirstOfTheWorstCells) {
     }
   }
   EXPECT_GT(tried, 3000);
+}
+
+TEST_F(WholeScanTest, CellsBesideTheCornersOfSmallTrianglesAreFoundWithoutRows) {
+  std::array<int, tin::simplify::kSmallArea + 1> tried{};
+  for (const unsigned voids : {0U, 40U}) {
+    for (const std::int32_t largest : {1, 9, 1 << 24}) {
+      fill(largest, voids);
+      for (int round = 0; round < 40000; ++round) {
+        const GridPoint a = cell(5), b = cell(5), c = cell(5);
+        const auto z = [this](GridPoint p) -> std::int32_t& {
+          return cells_[static_cast<std::size_t>(p.y * kColumns + p.x)];
+        };
+        for (const GridPoint corner : {a, b, c}) {
+          if (z(corner) == WholeHeights::kVoid) z(corner) = height(largest);
+        }
+        const auto p = plane(a, b, c, z(a), z(b), z(c));
+        if (p.area == 0 || p.area > tin::simplify::kSmallArea) continue;
+        const WorstCell expected = search(p), found = scan_beside_corners(heights(), p);
+        ASSERT_EQ(found.distance, expected.distance);
+        ASSERT_EQ(found.at, expected.at);
+        ++tried[static_cast<std::size_t>(p.area)];
+      }
+    }
+  }
+  for (std::size_t area = 1; area < tried.size(); ++area) EXPECT_GT(tried[area], 500);
 }
 
 TEST_F(WholeScanTest, SquaresThatArePassedOverHoldNoWorseCell) {
