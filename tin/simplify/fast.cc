@@ -52,10 +52,14 @@ void thin(Patch& patch, double tolerance, std::size_t samples, std::uint64_t see
   Search(patch, tolerance, Elevations::kSource, seed).run(tries, [&phase] { return phase.cancelled(); });
 }
 
-/// The samples of each tile alone, from the corners of their hull and from those in it on that never go.
+/// The samples of each tile alone, from the corners of their hull and from those in it on that never go. Tile by tile, behind those
+/// that more than one tile may have.
 bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<const SampleIndex> fixed,
                     double tolerance, unsigned threads, const Phase& phase, std::vector<Pin>& pins) {
-  std::vector<std::vector<Pin>> found(tiling.size());
+  struct Found {
+    std::vector<Pin> own, shared;
+  };
+  std::vector<Found> found(tiling.size());
   const bool finished = for_each_tile(tiling.size(), threads, phase, [&](std::size_t tile) {
     std::vector<Pin> corners;
     for (const SampleIndex corner : hull_corners(samples, tiling.box(tile))) {
@@ -69,15 +73,23 @@ bool start_in_tiles(const Samples& samples, const Tiling& tiling, std::span<cons
     Patch patch(samples, {}, corners);
     if (patch.mesh().dimension() == 2)
       thin(patch, tolerance, samples_in(samples, tiling, tile), Random(tile).next(), phase.silent());
-    patch.collect(found[tile]);
-    for (Pin& pin : found[tile]) pin.fixed = false;
+    patch.collect(found[tile].own);
+    const auto is_own = [&](const Pin& pin) { return !pin.fixed && tiling.is_inside(tile, samples.position(pin.sample)); };
+    auto& [own, shared] = found[tile];
+    const auto end_of_own = std::partition(own.begin(), own.end(), is_own);
+    shared.assign(end_of_own, own.end());
+    own.erase(end_of_own, own.end());
+    for (Pin& pin : shared) pin.fixed = false;
   });
+  for (const SampleIndex sample : fixed) pins.push_back({samples.site(sample).z, sample, true});
+  for (const Found& part : found) pins.insert(pins.end(), part.shared.begin(), part.shared.end());
+  unite(pins);
   std::size_t count = pins.size();
-  for (const auto& part : found) count += part.size();
+  for (const Found& part : found) count += part.own.size();
   pins.reserve(count);  // they are many, and doubling would ask for twice as much
-  for (auto& part : found) {
-    pins.insert(pins.end(), part.begin(), part.end());
-    std::vector<Pin>().swap(part);
+  for (Found& part : found) {
+    pins.insert(pins.end(), part.own.begin(), part.own.end());
+    std::vector<Pin>().swap(part.own);
   }
   return finished;
 }
@@ -146,9 +158,7 @@ std::unique_ptr<Patch> reach_tolerance(const Samples& samples, std::span<const S
   const Extent extent = samples.extent();
   const Tiling tiling = Tiling::of_about(extent, extent.samples / kSamplesPerTile);
   std::vector<Pin> pins;
-  for (const SampleIndex corner : corners) pins.push_back({samples.site(corner).z, corner, true});
   if (!start_in_tiles(samples, tiling, corners, tolerance, threads, phase.part(0, 0.8), pins)) return nullptr;
-  unite(pins);
   auto tin = std::make_unique<Patch>(samples, std::span<const Pin>(), pins, threads);
   std::vector<Pin>().swap(pins);
   const auto on_seam = find_seams(*tin, tiling);

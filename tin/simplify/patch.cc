@@ -21,6 +21,7 @@ Patch::Patch(const Samples& samples, std::span<const Pin> frozen, std::span<cons
   flags_.reserve(room);
   mesh_.reserve(room);
   sites_.resize(count + 1);
+  sites_[0] = {};
   flags_.resize(count + 1);
   if (count == 0) return;
   mesh_.begin_bulk(count);

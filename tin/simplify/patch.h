@@ -14,6 +14,7 @@
 
 #include "tin/delaunay/cavity.h"
 #include "tin/mesh/mesh.h"
+#include "tin/mesh/page_allocator.h"
 #include "tin/removal/remover.h"
 #include "tin/simplify/samples.h"
 
@@ -107,7 +108,7 @@ class Patch {
   delaunay::Cavity cavity_;
   mesh::VertexSlot beside_ = mesh::kInfinite;  // what was carved
   removal::Remover remover_;
-  std::vector<Site> sites_;          // by vertex slot
+  mesh::PageVector<Site> sites_;     // by vertex slot
   std::vector<std::uint8_t> flags_;  // the same
   std::vector<mesh::TriangleSlot> fresh_;
   std::vector<mesh::VertexSlot>* notes_ = nullptr;
