@@ -1,7 +1,9 @@
 // The limits of memory and of temporary files: at the limit all is well, past it work is refused and changes nothing.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
+#include <csignal>
 #include <thread>
 
 #include "tests/contract/limits.h"
@@ -88,6 +90,39 @@ TEST(LimitsTest, TemporaryFilesOfARasterThatIsSimplified) {
         server.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"t","tolerance":2}})").status,
         200);
   }
+}
+
+/// Where no file may have a megabyte, as on a disk that is full when a temporary one asks for its room.
+TEST(LimitsTest, AFullDiskUnderTemporaryFilesChangesNothing) {
+  constexpr std::int32_t kSide = 600;  // a text of 720,000 bytes, heights of 1,440,000
+  const std::string grid = ascii_grid(std::vector<std::vector<double>>(kSide, std::vector<double>(kSide, 7)));
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);  // as the server does
+  rlimit old_limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
+  const auto limit_files = [&](rlim_t bytes) {
+    const rlimit limit{bytes, old_limit.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  };
+  for (const bool in_files : {false, true}) {
+    TestServer server([&](server::Config& config) {
+      if (in_files) config.limits.raster_memory_bytes = 1 << 20;
+    });
+    const auto upload = [&] { return server.upload("/tins?id=t&tolerance=3&effort=fast", "text/plain", grid); };
+    const std::string before = server.state();
+    limit_files(1'000'000);
+    const RawAnswer answer = upload();
+    limit_files(old_limit.rlim_cur);
+    if (!in_files) {
+      EXPECT_EQ(answer.status, 201) << "nothing else needs such a file: " << answer.body;
+      continue;
+    }
+    EXPECT_EQ(answer.status, 507) << answer.body;
+    EXPECT_EQ(slug(answer), "insufficient-storage");
+    EXPECT_EQ(server.state(), before);
+    EXPECT_EQ(server.leftovers(), std::set<std::string>{});
+    EXPECT_EQ(upload().status, 201);
+  }
+  std::signal(SIGXFSZ, old_handler);
 }
 
 /// What work takes beside a raster's samples is asked for on its way.
