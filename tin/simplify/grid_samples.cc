@@ -212,14 +212,13 @@ std::optional<SampleIndex> GridSamples::find(Point p) const {
   return exists(found) ? std::optional(found) : std::nullopt;
 }
 
-std::optional<SampleIndex> GridSamples::neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const {
-  if (sample >= cell_count()) return std::nullopt;
-  const auto width = static_cast<SampleIndex>(grid_.width);
-  const std::int32_t column = static_cast<std::int32_t>(sample % width) + columns,
-                     row = static_cast<std::int32_t>(sample / width) + rows;
+std::optional<Site> GridSamples::beside(const Site& sample, std::int32_t columns, std::int32_t rows) const {
+  if (sample.column < 0) return std::nullopt;
+  const std::int32_t column = sample.column + columns, row = sample.row + rows;
   if (column < 0 || row < 0 || column >= grid_.width || row >= grid_.height) return std::nullopt;
   const SampleIndex found = index(column, row);
-  return height(found) ? std::optional(found) : std::nullopt;
+  const auto z = height(found);
+  return z ? std::optional(Site{grid_.centre(column, row), column, row, *z, found}) : std::nullopt;
 }
 
 Extent GridSamples::extent() const {

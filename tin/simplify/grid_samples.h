@@ -42,7 +42,7 @@ class GridSamples : public Samples {
   bool exists(SampleIndex sample) const override {
     return sample < cell_count() ? height(sample).has_value() : others_.exists(sample);
   }
-  std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const override;
+  std::optional<Site> beside(const Site& sample, std::int32_t columns, std::int32_t rows) const override;
   bool has_neighbours() const override { return others_.empty(); }
   Footprint* footprint() const override { return footprint_; }
   Extent extent() const override;

@@ -26,10 +26,11 @@ class Neighbourhood {
   std::span<const SampleIndex> of(SampleIndex sample) {
     found_.clear();
     if (samples_.has_neighbours()) {
+      const Site site = samples_.site(sample);
       for (std::int32_t row = -1; row <= 1; ++row) {
         for (std::int32_t column = -1; column <= 1; ++column) {
-          const auto beside = samples_.neighbour(sample, column, row);
-          if (beside && *beside != sample) found_.push_back(*beside);
+          const auto beside = samples_.beside(site, column, row);
+          if (beside && beside->sample != sample) found_.push_back(beside->sample);
         }
       }
     } else {

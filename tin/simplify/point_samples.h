@@ -27,7 +27,7 @@ class PointSamples final : public Samples {
   std::optional<SampleIndex> find(exact::Point p) const override;
   SampleIndex end() const override { return first_ + static_cast<SampleIndex>(samples_.size()); }
   bool exists(SampleIndex sample) const override { return sample >= first_ && sample < end(); }
-  std::optional<SampleIndex> neighbour(SampleIndex, std::int32_t, std::int32_t) const override { return std::nullopt; }
+  std::optional<Site> beside(const Site&, std::int32_t, std::int32_t) const override { return std::nullopt; }
   bool has_neighbours() const override { return false; }
   Footprint* footprint() const override { return footprint_; }
   Extent extent() const override;

@@ -107,8 +107,8 @@ class Samples {
   virtual bool exists(SampleIndex sample) const = 0;
 
   /// The sample so many columns and rows from one on a raster; nothing where there is none.
-  virtual std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns, std::int32_t rows) const = 0;
-  /// Whether neighbour() knows any: on a raster with nothing beside it.
+  virtual std::optional<Site> beside(const Site& sample, std::int32_t columns, std::int32_t rows) const = 0;
+  /// Whether beside() knows any: on a raster with nothing beside it.
   virtual bool has_neighbours() const = 0;
 
   /// What notes the memory that work on them takes; null: nobody does.

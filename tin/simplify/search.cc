@@ -116,8 +116,8 @@ void Search::look_at(const std::array<VertexSlot, 3>& corners) {
   const Scan scan = patch_.samples().scan(patch_.site(corners[0]), patch_.site(corners[1]),
                                           patch_.site(corners[2]), tolerance_, Depth::kWorst);
   if (!scan.over) return;
-  bad_.push_back({corners, scan.sample});
-  witnesses_.push_back(patch_.samples().site(scan.sample));
+  bad_.push_back({corners, patch_.samples().site(scan.sample)});
+  witnesses_.push_back(bad_.back().worst);
 }
 
 /// Whether a vertex at `p` would do away with the triangle.
@@ -204,18 +204,15 @@ std::uint32_t Search::reach_over(const Bad& bad) const {
 
 /// Near the worst sample, or that itself: never what was just taken out, if that can be had.
 Site Search::some_spot(const Bad& bad, std::span<const Site> removed) {
-  const Samples& samples = patch_.samples();
-  const Site worst = samples.site(bad.sample);
   const bool was_vertex = std::any_of(removed.begin(), removed.end(),
-                                      [&](const Site& site) { return site.sample == bad.sample; });
-  if (!was_vertex && random_.below(100) >= kBeside) return worst;
+                                      [&](const Site& site) { return site.sample == bad.worst.sample; });
+  if (!was_vertex && random_.below(100) >= kBeside) return bad.worst;
   const std::uint32_t reach = reach_over(bad);
   const auto offset = [this, reach] {
     return static_cast<std::int32_t>(random_.below(2 * reach + 1)) - static_cast<std::int32_t>(reach);
   };
   const std::int32_t columns = offset(), rows = offset();
-  const auto beside = samples.neighbour(bad.sample, columns, rows);
-  return beside ? samples.site(*beside) : worst;
+  return patch_.samples().beside(bad.worst, columns, rows).value_or(bad.worst);
 }
 
 /// Which heights keep all samples over the star within the tolerance, as far as it is up to them.

@@ -49,10 +49,10 @@ class Search {
   void run(std::size_t tries, const std::function<bool()>& stop);
 
  private:
-  /// A triangle with a sample over the tolerance, the worst.
+  /// A triangle with a sample over the tolerance.
   struct Bad {
     std::array<mesh::VertexSlot, 3> corners;  // counter-clockwise
-    SampleIndex sample;
+    Site worst;
   };
   struct Change {
     enum class Kind { kInserted, kRemoved, kRaised } kind;

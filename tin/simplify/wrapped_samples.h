@@ -37,9 +37,8 @@ class WrappedSamples : public Samples {
   std::optional<SampleIndex> find(exact::Point p) const override { return inner_->find(p); }
   SampleIndex end() const override { return inner_->end(); }
   bool exists(SampleIndex sample) const override { return inner_->exists(sample); }
-  std::optional<SampleIndex> neighbour(SampleIndex sample, std::int32_t columns,
-                                       std::int32_t rows) const override {
-    return inner_->neighbour(sample, columns, rows);
+  std::optional<Site> beside(const Site& sample, std::int32_t columns, std::int32_t rows) const override {
+    return inner_->beside(sample, columns, rows);
   }
   bool has_neighbours() const override { return inner_->has_neighbours(); }
   Footprint* footprint() const override { return inner_->footprint(); }
