@@ -78,7 +78,7 @@ class Reduction {
 
   /// One round. False when cancelled; then `tin` is null.
   bool search(std::unique_ptr<Patch>& tin, double tolerance, const Phase& phase) {
-    constexpr double kTriesPerVertex = 1.5;
+    constexpr double kTriesPerVertex = 1.3;
     const std::size_t vertices = tin->mesh().vertex_count();
     const double x = random_.fraction(), y = random_.fraction();
     const auto tiling = vertices < kFewVertices

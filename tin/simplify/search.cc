@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tin/base/check.h"
 #include "tin/delaunay/walk.h"
@@ -16,9 +17,12 @@ using mesh::VertexSlot;
 namespace {
 
 // All were found by experiment, on mountains and plains alike.
-constexpr std::uint32_t kPairs = 30;           // percent of the tries that take out two vertices
+constexpr std::uint32_t kPairs = 70;           // percent of the tries that take out two vertices
+constexpr std::uint32_t kNeighbours = 4;       // drawn for the second of two; it is the nearest of them
 constexpr std::uint32_t kBeside = 75;          // percent of the insertions beside the worst sample, not there
 constexpr std::uint32_t kDraws = 16;           // places that are drawn for the last vertex of a try
+constexpr std::uint32_t kDrawsForTwo = 8;      // for one vertex instead of two, which is possible less often
+constexpr std::uint32_t kDrawsForFirst = 4;    // for the first of two insertions
 constexpr std::size_t kSpots = 8;              // so many of them are tried at most
 constexpr std::size_t kBetweenQuestions = 64;  // tries between two looks at whether to stop
 
@@ -70,26 +74,42 @@ void Search::attempt() {
 void Search::change_one(VertexSlot v) {
   trial_.visit_hole(patch_, v, [this](VertexSlot a, VertexSlot b, VertexSlot c) { look_at({a, b, c}); });
   const Site site = patch_.site(v);
-  if (!bad_.empty()) find_spots({&site, 1});
+  if (!bad_.empty()) find_spots({&site, 1}, kDraws);
   if (!bad_.empty() && spots_.empty() && step_ == 0) return patch_.settle(v);
   if (!take_out(v)) return;
   bad_.empty() || mend_by_height() || insert_last() ? remove_around() : roll_back();
 }
 
+/// One vertex instead of two is what makes the TIN smaller; two others let it wander.
 void Search::change_two(VertexSlot v, VertexSlot other) {
   if (!take_out(v)) return;
   if (!take_out(other)) return roll_back();
   look_into_hole();
   if (bad_.empty() || mend_by_height()) return remove_around();
   const std::array removed{changes_[0].site, changes_[1].site};
+  find_spots(removed, kDrawsForTwo);
+  if (insert_last()) return remove_around();
   if (!insert_first(removed)) return roll_back();
-  if (!bad_.empty()) find_spots(removed);
+  if (!bad_.empty()) find_spots(removed, kDraws);
   bad_.empty() || insert_last() ? remove_around() : roll_back();
 }
 
+/// A near one rather than others: of two vertices that are near each other one is needed less.
 VertexSlot Search::some_neighbour(VertexSlot v) {
-  patch_.mesh().link(v, link_);
-  return patch_.mesh().origin(link_[random_.below(static_cast<std::uint32_t>(link_.size()))]);
+  const mesh::Mesh& mesh = patch_.mesh();
+  mesh.link(v, link_);
+  VertexSlot nearest = kInfinite;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < kNeighbours; ++i) {
+    const VertexSlot drawn = mesh.origin(link_[random_.below(static_cast<std::uint32_t>(link_.size()))]);
+    if (drawn == kInfinite) continue;
+    const double x = static_cast<double>(mesh.point(drawn).x) - mesh.point(v).x,
+                 y = static_cast<double>(mesh.point(drawn).y) - mesh.point(v).y;
+    if (x * x + y * y >= least) continue;
+    least = x * x + y * y;
+    nearest = drawn;
+  }
+  return nearest;
 }
 
 bool Search::take_out(VertexSlot v) {
@@ -128,10 +148,18 @@ bool Search::concerns(const Bad& bad, exact::Point p) const {
   return p != a && p != b && p != c && exact::in_circle(a, b, c, p);
 }
 
-/// The first of two insertions: near any of the worst samples.
+/// The first of two insertions: of a few places the one that does away with most triangles over the tolerance.
 bool Search::insert_first(std::span<const Site> removed) {
-  const Bad& bad = bad_[random_.below(static_cast<std::uint32_t>(bad_.size()))];
-  const Site site = some_spot(bad, removed);
+  Site site;
+  std::ptrdiff_t most = -1;
+  for (std::uint32_t i = 0; i < kDrawsForFirst; ++i) {
+    const Site drawn = some_spot(some_bad(), removed);
+    const auto done_away_with =
+        std::count_if(bad_.begin(), bad_.end(), [&](const Bad& bad) { return concerns(bad, drawn.at); });
+    if (done_away_with <= most) continue;
+    most = done_away_with;
+    site = drawn;
+  }
   const auto v = patch_.insert(site, delaunay::finite_start(patch_.mesh(), near_));
   if (!v) return false;
   near_ = patch_.fresh().front();
@@ -147,10 +175,10 @@ bool Search::insert_first(std::span<const Site> removed) {
 }
 
 /// Draws a few places for the last vertex: where it does away with all triangles over the tolerance.
-void Search::find_spots(std::span<const Site> removed) {
+void Search::find_spots(std::span<const Site> removed, std::uint32_t draws) {
   spots_.clear();
-  for (std::uint32_t i = 0; i < kDraws && spots_.size() < kSpots; ++i) {
-    const Site site = some_spot(bad_[random_.below(static_cast<std::uint32_t>(bad_.size()))], removed);
+  for (std::uint32_t i = 0; i < draws && spots_.size() < kSpots; ++i) {
+    const Site site = some_spot(some_bad(), removed);
     const auto is_concerned = [&](const Bad& bad) { return concerns(bad, site.at); };
     const auto is_same = [&](const Site& spot) { return spot.sample == site.sample; };
     if (std::all_of(bad_.begin(), bad_.end(), is_concerned) &&

@@ -67,9 +67,10 @@ class Search {
   bool take_out(mesh::VertexSlot v);
   void look_into_hole();
   bool insert_first(std::span<const Site> removed);
-  void find_spots(std::span<const Site> removed);
+  void find_spots(std::span<const Site> removed, std::uint32_t draws);
   bool insert_last();
   bool fits(Site& site);
+  const Bad& some_bad() { return bad_[random_.below(static_cast<std::uint32_t>(bad_.size()))]; }
   std::uint32_t reach_over(const Bad& bad) const;
   Site some_spot(const Bad& bad, std::span<const Site> removed);
   bool concerns(const Bad& bad, exact::Point p) const;
