@@ -25,16 +25,28 @@ struct InForce {
 };
 
 /// None where no source is kept, or no surface is left.
-Result<InForce> samples_in_force(const Tin& tin, const Terrain& terrain, const ScratchSpace& scratch,
-                                 Simplified& result) {
-  if (terrain.mesh().dimension() < 2) return InForce();
-  auto source = tin.source(scratch);
-  if (!source) return source.error();
-  if (!*source) return InForce();
-  auto in_force = terrain.amendments().in_force(**source, terrain);
+InForce in_force(std::shared_ptr<const SourceSamples> source, const Terrain& terrain, Simplified& result) {
+  if (!source || terrain.mesh().dimension() < 2) return InForce();
+  auto samples = terrain.amendments().in_force(*source, terrain);
   result.against_source = true;
-  result.out_of_force = (*source)->sample_count() - in_force.sample_count();
-  return InForce{*std::move(source), std::move(in_force)};
+  result.out_of_force = source->sample_count() - samples.sample_count();
+  return InForce{std::move(source), std::move(samples)};
+}
+
+/// Holds the tolerance in a version that others edited meanwhile.
+Mend mending(std::shared_ptr<const SourceSamples> source, const tin::simplify::Options& options,
+             Simplified& result, tin::base::Progress& progress) {
+  return [source = std::move(source), &options, &result, &progress](
+             const Terrain& now, const Terrain& landed) -> Result<Thinning> {
+    // Where no surface is left that could be held, nothing goes.
+    if (now.mesh().dimension() < 2 || landed.mesh().dimension() < 2) return Thinning();
+    const InForce samples = in_force(source, now, result);
+    auto outcome =
+        tin::simplify::mend(now, samples.get(), now.amendments().own(), landed, options, &progress);
+    if (!outcome) return outcome.error();
+    result.report = outcome->report;
+    return Thinning{std::move(outcome->removed), std::move(outcome->inserted), std::move(outcome->reset)};
+  };
 }
 
 /// What is left of the TIN at the end, and the heights of a raster as they are worked on.
@@ -65,8 +77,9 @@ Result<Simplified> simplify(Catalogue& catalogue, const SimplifyRequest& request
   std::optional<GrowingLease> lease(*std::move(leased));
   Simplified result;
   result.tin = request.tin;
-  const auto in_force = samples_in_force(*request.tin, *seen.terrain, catalogue.scratch(), result);
-  if (!in_force) return in_force.error();
+  const auto source = request.tin->source(catalogue.scratch());
+  if (!source) return source.error();
+  const InForce samples = in_force(*source, *seen.terrain, result);
   const auto memory = catalogue.scratch().memory();
   progress.begin_phase(0.02, 0.95);
   auto options = request.options;
@@ -76,7 +89,7 @@ Result<Simplified> simplify(Catalogue& catalogue, const SimplifyRequest& request
   options.protect = protected_positions(*seen.terrain, request.protect);
   options.memory = memory.get();
   options.room = [&lease](std::size_t bytes) { return lease->grow_to(bytes); };
-  auto outcome = tin::simplify::simplify(*seen.terrain, in_force->get(), seen.terrain->amendments().own(),
+  auto outcome = tin::simplify::simplify(*seen.terrain, samples.get(), seen.terrain->amendments().own(),
                                          options, &progress);
   if (!outcome) return lease->refusal() ? *lease->refusal() : outcome.error();
   progress.begin_phase(0.95, 1);
@@ -92,8 +105,10 @@ Result<Simplified> simplify(Catalogue& catalogue, const SimplifyRequest& request
     result.tin = *made;
     result.revision = 1;
   } else {
-    const auto landed = request.tin->land(seen, thinning, {now_ms(), "", "simplify"});
-    if (!landed) return landed.error();
+    const bool holds = options.tolerance && result.report.tolerance_met;
+    const auto landed = request.tin->land(seen, thinning, {now_ms(), "", "simplify"},
+                                          holds ? mending(*source, options, result, progress) : Mend());
+    if (!landed) return lease->refusal() ? *lease->refusal() : landed.error();
     result.revision = landed->revision;
     result.edited_meanwhile = landed->edited_meanwhile;
     result.report.vertices_after = landed->vertices_left;

@@ -44,8 +44,9 @@ struct Simplified {
   std::uint64_t revision = 0;    // of it
   double seconds = 0;
   bool out_of_time = false;  // max_seconds ended the search
-  /// Others edited the TIN meanwhile: their edits stand, the report speaks of the version that was
-  /// simplified.
+  /// Others edited the TIN meanwhile: their edits stand. Where the tolerance was met, samples that it needs
+  /// beside them have become vertices again, and the report speaks of the revision; else of the version that
+  /// was simplified.
   bool edited_meanwhile = false;
 };
 

@@ -44,6 +44,10 @@ struct Landed {
   bool edited_meanwhile = false;  // others edited the TIN since the version that was seen
 };
 
+/// What has to become of `now` where a thinning that was chosen for an earlier version would make `landed` of it.
+using Mend = std::function<tin::base::Result<Thinning>(const tin::terrain::Terrain& now,
+                                                       const tin::terrain::Terrain& landed)>;
+
 /// What the document of a TIN says of its content, all at one revision.
 struct Summary {
   std::uint64_t revision = 0;
@@ -134,10 +138,12 @@ class Tin {
   std::optional<tin::terrain::Vertex> vertex_after(std::uint64_t revision, VertexId id) const;
 
   /// Takes a simplification in as one revision; vertices that are gone meanwhile, or changed since `seen`,
-  /// and positions where another stands by now, stay out of it. A large one is prepared beside readers and
-  /// editors. Errors: kTooLarge (vertices per TIN), kNotFound (retired), kStorage.
+  /// and positions where another stands by now, stay out of it. What is large, or was edited meanwhile, is
+  /// prepared beside readers and editors. `mend` says what has to become of a version that was edited
+  /// meanwhile instead, if anything has to. Errors: kTooLarge (vertices per TIN), kNotFound (retired),
+  /// kStorage; those of `mend`.
   tin::base::Result<Landed> land(const Version& seen, const Thinning& thinning,
-                                 const store::RevisionInfo& info);
+                                 const store::RevisionInfo& info, const Mend& mend = {});
 
   /// The samples that the TIN was made of, as they were then; null where none are kept. Read from the store
   /// when nobody else has them in hand, and given back when the last one lets go; where `space` says if they
@@ -204,7 +210,8 @@ class Tin {
   void remember_past() noexcept;  // that the present terrain goes, so that held_bytes() counts it as long as it is held
   void reload() noexcept;
 
-  tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning, const Terms& terms);
+  tin::base::Result<Landed> land_in_place(const Version& seen, const Thinning& thinning, const Mend& mend,
+                                          const Terms& terms);
   tin::base::Result<Edited> replay_aside(const tin::terrain::Change& change, const Terms& terms,
                                          MemoryBudget* memory);
   tin::base::Error explain_conflict(std::uint64_t revision, const tin::terrain::Change& inverse,

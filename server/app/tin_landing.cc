@@ -44,6 +44,15 @@ Result<std::shared_ptr<Terrain>> replayed(const Terrain& terrain, const Change& 
   return std::make_shared<Terrain>(std::move(*built));
 }
 
+/// A thinning of `seen` as it fits `now`: mended, if there is somebody who does that.
+Result<Fitting> fitted(const Terrain& seen, const Terrain& now, const Thinning& thinning, const Mend& mend) {
+  Fitting fitting = fit(seen, now, thinning);
+  if (!mend) return fitting;
+  const auto mended = mend(now, rebuilt(now, fitting));
+  if (!mended) return mended.error();
+  return fit(now, now, *mended);
+}
+
 std::string name_of(VertexId id) {
   return "vertex " + std::to_string(id.value());
 }
@@ -140,36 +149,48 @@ tin::base::Error Tin::explain_conflict(std::uint64_t revision, const Change& inv
   return error(Code::kConflict, why);
 }
 
-Result<Landed> Tin::land(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info) {
+Result<Landed> Tin::land(const Version& seen, const Thinning& thinning, const store::RevisionInfo& info,
+                         const Mend& mend) {
   const Terms terms{{}, info, std::nullopt};
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const Version base = attempt == 0 ? seen : version();
-    Fitting fitting = fit(*seen.terrain, *base.terrain, thinning);
-    if (fitting.change.steps.size() <= kSmall) break;
+    const bool edited = base.revision != seen.revision;
+    auto fitting = fitted(*seen.terrain, *base.terrain, thinning, edited ? mend : Mend());
+    if (!fitting) return fitting.error();
+    if (fitting->change.steps.size() <= kSmall && !(edited && mend)) {
+      if (!mend) break;
+      Terms unless_edited = terms;
+      unless_edited.expected = {&base.revision, 1};
+      auto landed = land_in_place(seen, thinning, {}, unless_edited);
+      if (landed || landed.error().code != Code::kPrecondition) return landed;
+      continue;
+    }
     Write write(terms);
     write.alone = true;
-    write.prepared = std::make_shared<Terrain>(rebuilt(*base.terrain, fitting));
+    write.prepared = std::make_shared<Terrain>(rebuilt(*base.terrain, *fitting));
     write.prepared_from = base.revision;
-    write.change = std::move(fitting.change);
+    write.change = std::move(fitting->change);
     const std::size_t left = write.prepared->vertex_count();
     auto done = submit(write);
     if (write.outdated) continue;
     if (!done) return done.error();
-    return Landed{done->revision, left, base.revision != seen.revision};
+    return Landed{done->revision, left, edited};
   }
-  return land_in_place(seen, thinning, terms);
+  return land_in_place(seen, thinning, mend, terms);
 }
 
 /// Few vertices, or editors who were quicker each time: now they wait.
-Result<Landed> Tin::land_in_place(const Version& seen, const Thinning& thinning, const Terms& terms) {
+Result<Landed> Tin::land_in_place(const Version& seen, const Thinning& thinning, const Mend& mend,
+                                  const Terms& terms) {
   Landed landed;
   bool any = false;
   Write write(terms);
   write.weight = thinning.removed.size() + thinning.inserted.size() + thinning.reset.size();
-  write.apply = [&](Terrain& terrain) {
-    const Fitting fitting = fit(*seen.terrain, terrain, thinning);
-    any = !fitting.change.steps.empty();
-    auto done = replay(terrain, fitting.change);
+  write.apply = [&](Terrain& terrain) -> Result<Terrain::Applied> {
+    const auto fitting = fitted(*seen.terrain, terrain, thinning, mend);
+    if (!fitting) return fitting.error();
+    any = !fitting->change.steps.empty();
+    auto done = replay(terrain, fitting->change);
     landed.vertices_left = terrain.vertex_count();
     return done;
   };

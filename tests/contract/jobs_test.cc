@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "tests/contract/test_server.h"
@@ -52,6 +53,48 @@ TEST_F(JobsTest, AJobThatWaitsIsDismissedAndNothingIsMade) {
   busy.reset();
   EXPECT_EQ(server_.leftovers(), std::set<std::string>{}) << "a dismissed upload is not kept";
   EXPECT_EQ(server_.state(), before);
+}
+
+/// What the vertices that go held in place beside an edit becomes vertices again: the tolerance is that of the
+/// revision.
+TEST_F(JobsTest, AnEditWhileATinIsSimplifiedLeavesNoSampleBeyondTheTolerance) {
+  constexpr int kSide = 120;
+  constexpr double kTolerance = 20;
+  std::vector<std::vector<double>> rows(kSide, std::vector<double>(kSide));
+  std::uint32_t state = 1;
+  for (auto& row : rows) {
+    for (double& z : row) z = (state = state * 1664525 + 1013904223) >> 26;
+  }
+  ASSERT_EQ(server_.upload("/tins?id=t", "text/plain", ascii_grid(rows)).status, 201);
+  const std::string job =
+      simplify(R"({"tin":"t","tolerance":20,"effort":"best","maxSeconds":2})").header("location");
+  const auto started = [&] { return Json::parse(server_.get(job).body).value("progress", 0) > 5; };
+  for (int i = 0; i < 400 && !started(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  constexpr int kPeak = kSide * kSide / 2 + kSide / 2;  // a vertex inside, by rows
+  ASSERT_EQ(server_
+                .post_json("/tins/t/edits",
+                           R"({"ops":[{"op":"set-z","id":)" + std::to_string(kPeak) + R"(,"z":9000}]})")
+                .status,
+            200);
+  ASSERT_EQ(finished(job), "successful");
+  const Json results = Json::parse(server_.get(job + "/results").body);
+  EXPECT_TRUE(results.at("editedMeanwhile"));
+  EXPECT_TRUE(results.at("toleranceMet"));
+  EXPECT_LE(results.at("maxError"), kTolerance);
+  EXPECT_EQ(results.at("verticesAfter"), server_.tin("t").at("vertexCount"));
+  EXPECT_LT(results.at("verticesAfter"), kSide * kSide);
+  Json positions = Json::array();
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) positions.push_back({column + 0.5, kSide - row - 0.5});
+  }
+  const Json found =
+      Json::parse(server_.post_json("/tins/t/elevation", Json{{"positions", positions}}.dump()).body);
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double error = found.at("z").at(i).get<double>() - rows[i / kSide][i % kSide];
+    if (std::abs(error) > kTolerance + 1e-9) ++beyond;
+  }
+  EXPECT_EQ(beyond, 1U) << "but for the one that was edited";
 }
 
 TEST_F(JobsTest, TwoJobsForOneIdMakeOneTin) {

@@ -10,6 +10,7 @@
 
 #include "tin/base/check.h"
 #include "tin/simplify/certificate.h"
+#include "tin/simplify/greedy.h"
 #include "tin/simplify/phase.h"
 #include "tin/simplify/reduce.h"
 #include "tin/simplify/samples.h"
@@ -99,6 +100,29 @@ std::vector<SampleIndex> with_protected(const Samples& samples, std::vector<Samp
   return corners;
 }
 
+/// What is to be said of a TIN, and its vertices.
+Result<Choice> certified(std::unique_ptr<Patch> tin, const SourceSamples* source, double asked, double bin, unsigned threads,
+                         const Footprint& footprint, const Phase& phase) {
+  const Samples& samples = tin->samples();
+  const auto certificate = certify(*tin, asked, bin, threads, phase);
+  if (!certificate) return stopped(footprint);
+  Choice out;
+  tin->collect(out.pins);
+  tin.reset();
+  std::sort(out.pins.begin(), out.pins.end(), [](const Pin& a, const Pin& b) { return a.sample < b.sample; });
+  out.report.vertices_after = out.pins.size();
+  out.report.samples = certificate->samples;
+  out.report.crossings = certificate->crossings;
+  out.report.level = certificate->level;
+  out.report.max_error = certificate->max_error;
+  out.report.worst = worst_of(samples, source, *certificate);
+  out.report.rmse = certificate->rmse;
+  out.report.histogram = certificate->histogram;
+  out.report.bin = bin;
+  out.report.tolerance_met = certificate->within;
+  return out;
+}
+
 Result<Choice> choose(const Samples& samples, const SourceSamples* source, const Options& options,
                       const Footprint& footprint, const Phase& whole) {
   const auto corners = hull_corners(samples, samples.extent().box);
@@ -115,25 +139,30 @@ Result<Choice> choose(const Samples& samples, const SourceSamples* source, const
   if (!reduced) return stopped(footprint);
   const double asked = options.tolerance.value_or(std::numeric_limits<double>::max());
   const double bin = (reduced->to_tolerance ? asked : reduced->error) / kBins;
-  const auto certificate = certify(*reduced->tin, asked, bin, options.threads, whole.part(0.9, 1));
-  if (!certificate) return stopped(footprint);
-  TIN_CHECK(certificate->within || !reduced->to_tolerance);
-  Choice out;
-  reduced->tin->collect(out.pins);
-  reduced->tin.reset();
-  std::sort(out.pins.begin(), out.pins.end(), [](const Pin& a, const Pin& b) { return a.sample < b.sample; });
-  out.report.vertices_after = out.pins.size();
-  out.report.samples = certificate->samples;
-  out.report.crossings = certificate->crossings;
-  out.report.level = certificate->level;
-  out.report.max_error = certificate->max_error;
-  out.report.worst = worst_of(samples, source, *certificate);
-  out.report.rmse = certificate->rmse;
-  out.report.histogram = certificate->histogram;
-  out.report.bin = bin;
-  out.report.tolerance_met = certificate->within;
+  auto out = certified(std::move(reduced->tin), source, asked, bin, options.threads, footprint, whole.part(0.9, 1));
+  if (!out) return out;
+  TIN_CHECK(out->report.tolerance_met || !reduced->to_tolerance);
   whole.report(1);
   return out;
+}
+
+/// The vertices of `start` that are samples, with their heights there if the tolerance allows these, and the corners of the samples'
+/// hull.
+std::vector<Pin> pins_of(const Terrain& start, const Samples& samples, double tolerance) {
+  std::vector<Pin> pins;
+  for (const SampleIndex corner : hull_corners(samples, samples.extent().box))
+    pins.push_back({samples.site(corner).z, corner, true});
+  for (const terrain::Vertex& vertex : start.vertices_by_id()) {
+    const auto sample = samples.find(vertex.at);
+    if (!sample) continue;
+    const double own = samples.site(*sample).z, distance = std::abs(vertex.z - own);
+    pins.push_back({distance < tolerance * (1 - 0x1p-40) ? vertex.z : own, *sample});
+  }
+  const auto comes_before = [](const Pin& a, const Pin& b) { return a.sample < b.sample; };
+  std::stable_sort(pins.begin(), pins.end(), comes_before);  // corners before others of the same sample
+  const auto is_same = [](const Pin& a, const Pin& b) { return a.sample == b.sample; };
+  pins.erase(std::unique(pins.begin(), pins.end(), is_same), pins.end());
+  return pins;
 }
 
 /// How `terrain` becomes what was chosen.
@@ -173,6 +202,24 @@ Result<Outcome> simplify(const Terrain& terrain, const SourceSamples* source, st
   const auto samples = make_samples(&terrain, source, own, demands_of(options, footprint), progress);
   if (!samples) return stopped(footprint);
   auto choice = choose(*samples, source, options, footprint, whole.part(0.05, 1));
+  if (!choice) return choice.error();
+  return difference(terrain, *samples, std::move(*choice));
+}
+
+Result<Outcome> mend(const Terrain& terrain, const SourceSamples* source, std::span<const Placement> own,
+                     const Terrain& start, const Options& options, base::Progress* progress) {
+  if (auto fine = check(options); !fine) return fine.error();
+  TIN_CHECK(options.tolerance.has_value());
+  Footprint footprint(options.room);
+  const Phase whole = Phase(progress, 0, 1).until(footprint.is_over());
+  const auto samples = make_samples(&terrain, source, own, demands_of(options, footprint), progress);
+  if (!samples) return stopped(footprint);
+  auto tin = std::make_unique<Patch>(*samples, std::span<const Pin>(), pins_of(start, *samples, *options.tolerance),
+                                     options.threads);
+  const auto end = Greedy(*tin, *options.tolerance).run(Greedy::kNoBudget, whole.part(0.2, 0.8));
+  if (end == Greedy::End::kCancelled) return stopped(footprint);
+  auto choice = certified(std::move(tin), source, *options.tolerance, *options.tolerance / kBins, options.threads,
+                          footprint, whole.part(0.8, 1));
   if (!choice) return choice.error();
   return difference(terrain, *samples, std::move(*choice));
 }

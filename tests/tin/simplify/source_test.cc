@@ -46,6 +46,38 @@ TEST_F(SimplifyTest, ASecondSimplificationIsHeldAgainstTheFirstSamples) {
   }
 }
 
+/// Spikes and holes that came while vertices were chosen for the terrain without them.
+TEST_F(SimplifyTest, AChoiceForAnEarlierStateIsMendedForALaterOne) {
+  std::size_t put_back = 0;
+  for (const auto& [name, raster] : support::hard_rasters(random_, 30)) {
+    SCOPED_TRACE(name);
+    const Terrain seen = support::raster_terrain(raster);
+    if (seen.mesh().dimension() < 2) continue;
+    for (const double tolerance : {0.0, 3.0, 30.0}) {
+      const auto chosen = simplify(seen, to(tolerance), nullptr);
+      ASSERT_TRUE(chosen.ok());
+      Terrain now = seen;
+      const auto vertices = now.vertices_by_id();
+      for (int i = 0; i < 4; ++i) {
+        const auto id = vertices[random_() % vertices.size()].id;
+        if (!now.vertex(id)) continue;
+        const Edit edit = i % 2 == 0 ? Edit(tin::terrain::SetZ{id, 700}) : Edit(tin::terrain::Remove{id});
+        ASSERT_TRUE(now.apply({&edit, 1}, Duplicates::kReject).ok());
+      }
+      if (now.mesh().dimension() < 2) continue;
+      const auto outcome = tin::simplify::mend(now, nullptr, {}, applied(seen, *chosen), to(tolerance), nullptr);
+      ASSERT_TRUE(outcome.ok());
+      const Terrain result = applied(now, *outcome);
+      EXPECT_EQ(support::judge(now, result, tolerance).value_or(""), "");
+      EXPECT_TRUE(outcome->report.tolerance_met);
+      support::expect_true_report(now, result, *outcome);
+      put_back += result.vertex_count();
+      put_back -= std::min(put_back, applied(seen, *chosen).vertex_count());
+    }
+  }
+  EXPECT_GT(put_back, 0U);
+}
+
 TEST_F(SimplifyTest, SamplesNeedNoTerrain) {
   for (const auto& [name, raster] : support::hard_rasters(random_, 30)) {
     SCOPED_TRACE(name);
