@@ -41,8 +41,10 @@ Mend mending(std::shared_ptr<const SourceSamples> source, const tin::simplify::O
     // Where no surface is left that could be held, nothing goes.
     if (now.mesh().dimension() < 2 || landed.mesh().dimension() < 2) return Thinning();
     const InForce samples = in_force(source, now, result);
+    auto present = options;
+    present.protect = now.amendments().rim(now);
     auto outcome =
-        tin::simplify::mend(now, samples.get(), now.amendments().own(), landed, options, &progress);
+        tin::simplify::mend(now, samples.get(), now.amendments().own(), landed, present, &progress);
     if (!outcome) return outcome.error();
     result.report = outcome->report;
     return Thinning{std::move(outcome->removed), std::move(outcome->inserted), std::move(outcome->reset)};
@@ -87,6 +89,8 @@ Result<Simplified> simplify(Catalogue& catalogue, const SimplifyRequest& request
   const TimeBudget budget(request.max_seconds, start);
   options.out_of_time = budget.question();
   options.protect = protected_positions(*seen.terrain, request.protect);
+  const auto rim = seen.terrain->amendments().rim(*seen.terrain);
+  options.protect.insert(options.protect.end(), rim.begin(), rim.end());
   options.memory = memory.get();
   options.room = [&lease](std::size_t bytes) { return lease->grow_to(bytes); };
   auto outcome = tin::simplify::simplify(*seen.terrain, samples.get(), seen.terrain->amendments().own(),

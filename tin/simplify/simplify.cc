@@ -146,20 +146,19 @@ Result<Choice> choose(const Samples& samples, const SourceSamples* source, const
   return out;
 }
 
-/// The vertices of `start` that are samples, with their heights there if the tolerance allows these, and the corners of the samples'
-/// hull.
-std::vector<Pin> pins_of(const Terrain& start, const Samples& samples, double tolerance) {
+/// The vertices of `start` that are samples, with their heights there if the tolerance allows these, and what never goes.
+std::vector<Pin> pins_of(const Terrain& start, const Samples& samples, const Options& options) {
   std::vector<Pin> pins;
-  for (const SampleIndex corner : hull_corners(samples, samples.extent().box))
-    pins.push_back({samples.site(corner).z, corner, true});
+  for (const SampleIndex fixed : with_protected(samples, hull_corners(samples, samples.extent().box), options))
+    pins.push_back({samples.site(fixed).z, fixed, true});
   for (const terrain::Vertex& vertex : start.vertices_by_id()) {
     const auto sample = samples.find(vertex.at);
     if (!sample) continue;
     const double own = samples.site(*sample).z, distance = std::abs(vertex.z - own);
-    pins.push_back({distance < tolerance * (1 - 0x1p-40) ? vertex.z : own, *sample});
+    pins.push_back({distance < *options.tolerance * (1 - 0x1p-40) ? vertex.z : own, *sample});
   }
   const auto comes_before = [](const Pin& a, const Pin& b) { return a.sample < b.sample; };
-  std::stable_sort(pins.begin(), pins.end(), comes_before);  // corners before others of the same sample
+  std::stable_sort(pins.begin(), pins.end(), comes_before);  // what never goes before others of the same sample
   const auto is_same = [](const Pin& a, const Pin& b) { return a.sample == b.sample; };
   pins.erase(std::unique(pins.begin(), pins.end(), is_same), pins.end());
   return pins;
@@ -214,7 +213,7 @@ Result<Outcome> mend(const Terrain& terrain, const SourceSamples* source, std::s
   const Phase whole = Phase(progress, 0, 1).until(footprint.is_over());
   const auto samples = make_samples(&terrain, source, own, demands_of(options, footprint), progress);
   if (!samples) return stopped(footprint);
-  auto tin = std::make_unique<Patch>(*samples, std::span<const Pin>(), pins_of(start, *samples, *options.tolerance),
+  auto tin = std::make_unique<Patch>(*samples, std::span<const Pin>(), pins_of(start, *samples, options),
                                      options.threads);
   const auto end = Greedy(*tin, *options.tolerance).run(Greedy::kNoBudget, whole.part(0.2, 0.8));
   if (end == Greedy::End::kCancelled) return stopped(footprint);

@@ -147,8 +147,8 @@ base::Result<Outcome> simplify(const terrain::Terrain& terrain, const terrain::S
 
 /// What `terrain` should have after all, when the vertices of `start` were chosen for an earlier state of it: those of them that are
 /// samples or vertices here, with their heights in `start` where the tolerance allows these, and all samples that the tolerance needs
-/// beside them (greedy insertion; none of them goes). Of the options `effort`, `elevations`, `max_vertices`, `protect` and
-/// `out_of_time` mean nothing.
+/// beside them (greedy insertion; none of them goes), and what is protected. Of the options `effort`, `elevations`, `max_vertices`
+/// and `out_of_time` mean nothing.
 /// Requires: as simplify(); a tolerance; both terrains have dimension 2. Errors: kInvalidValue, kTooLarge, kCancelled.
 /// Ensures:  report.tolerance_met. Cost: building the TIN of `start`, and a look at all samples.
 base::Result<Outcome> mend(const terrain::Terrain& terrain, const terrain::SourceSamples* source,

@@ -228,6 +228,21 @@ void Amendments::take_simplification(const Terrain& after, const Change& change)
   std::inplace_merge(own_.begin(), own_.begin() + middle, own_.end(), before);
 }
 
+std::vector<Point> Amendments::rim(const Terrain& terrain) const {
+  const auto edited = touched();
+  std::vector<Point> out;
+  for (const EditedTriangle& t : areas_) {
+    for (const Point corner : t.corners) {
+      // Off the pixels of a raster there are vertices of people's only.
+      if (!is_off_pixels(terrain, corner) && !std::binary_search(edited.begin(), edited.end(), corner))
+        out.push_back(corner);
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
 SourceSamples Amendments::in_force(const SourceSamples& original, const Terrain& terrain) const {
   std::vector<std::size_t> gone;
   for (const Point p : touched()) {

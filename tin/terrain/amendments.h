@@ -7,6 +7,7 @@
 // set a
 //   vertex, when it lies strictly inside the area whose triangles an edit made or bent, or when the terrain
 //   no longer covers it.
+// - What stands around such an area has to stay (rim()), or the surface inside would follow it.
 // - What a simplification does changes no sample; neither does a revert, which only brings vertices back.
 //
 // On a terrain that still has all its samples as vertices no area matters, since no triangle holds a sample
@@ -58,6 +59,9 @@ class Amendments {
   std::span<const EditedTriangle> areas() const { return areas_; }
   /// Samples beside the source's that are no vertices at present, or not with their own height; by position.
   std::span<const Placement> own() const { return own_; }
+  /// Where people did not touch the corners of those areas, ascending: vertices there hold up the surface that
+  /// an edit left, since they were linked to what people touched, or to each other where a vertex had gone.
+  std::vector<exact::Point> rim(const Terrain& terrain) const;
   /// What the lists occupy: about 8 bytes per vertex that people touched, 150 if the terrain was simplified
   /// before.
   std::size_t bytes() const;

@@ -207,6 +207,28 @@ TEST(AmendmentsTest, EditsPutOutOfForceWhatTheirAreaHoldsAndNothingElse) {
   }
 }
 
+TEST(AmendmentsTest, WhatHoldsUpAnEditedAreaIsItsCornersButForWhatWasTouched) {
+  Random random(11);
+  auto [source, terrain] = thinned(random, true);
+  EXPECT_TRUE(terrain.amendments().rim(terrain).empty());
+  std::vector<tin::mesh::HalfEdge> link;
+  std::vector<Point> around;
+  const auto slot = *terrain.slot_of(VertexId(9));
+  terrain.mesh().link(slot, link);
+  for (const auto e : link) {
+    if (terrain.mesh().origin(e) != tin::mesh::kInfinite) around.push_back(terrain.mesh().point(terrain.mesh().origin(e)));
+  }
+  std::sort(around.begin(), around.end());
+  terrain.amend(terrain.apply(std::vector<Edit>{SetZ{VertexId(9), 70}}, Duplicates::kReject)->change);
+  EXPECT_EQ(terrain.amendments().rim(terrain), around);
+  // A vertex off the pixels is somebody's, and so is one that was touched.
+  terrain.amend(terrain.apply(std::vector<Edit>{Insert{{3, 4}, 90}}, Duplicates::kReject)->change);
+  for (const Point p : terrain.amendments().rim(terrain)) {
+    EXPECT_NE(p, (Point{3, 4}));
+    EXPECT_NE(p, terrain.vertex(VertexId(9))->at);
+  }
+}
+
 TEST(AmendmentsTest, OnATerrainWithAllItsSamplesOnlyWhatWasTouchedGoes) {
   std::vector<double> heights(kSize * kSize, 1.0);
   const auto source = SourceSamples::raster(grid(), heights);
