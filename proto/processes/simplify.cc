@@ -306,14 +306,18 @@ void write_simplify_report(JsonWriter& json, const SimplifyResults& results) {
   json.key("seconds").number(results.seconds);
 }
 
-std::string simplify_results_json(const SimplifyResults& results) {
-  JsonWriter json;
+void write_simplify_results(JsonWriter& json, const SimplifyResults& results) {
   json.begin_object();
   write_simplify_report(json, results);
   json.key("editedMeanwhile").boolean(results.edited_meanwhile);
   json.key("tin").string(results.tin);
   json.key("revision").integer(results.revision);
   json.end_object();
+}
+
+std::string simplify_results_json(const SimplifyResults& results) {
+  JsonWriter json;
+  write_simplify_results(json, results);
   return json.take();
 }
 

@@ -93,6 +93,8 @@ struct SimplifyResults {
 };
 /// The members that say how good the result is, those of an object that is open already.
 void write_simplify_report(JsonWriter& json, const SimplifyResults& results);
+/// The whole of it, as an object.
+void write_simplify_results(JsonWriter& json, const SimplifyResults& results);
 std::string simplify_results_json(const SimplifyResults& results);
 
 }  // namespace proto

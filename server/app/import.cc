@@ -1,5 +1,7 @@
 #include "server/app/import.h"
 
+#include <chrono>
+
 #include "server/app/source.h"
 #include "server/app/thinning.h"
 #include "server/app/threads.h"
@@ -119,8 +121,10 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
   return made;
 }
 
-Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
-                                        const ImportRequest& request, Progress& progress) {
+Result<ImportedTin> import_tin(Catalogue& catalogue, const std::filesystem::path& file, const ImportRequest& request,
+                               Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
   if (auto room = catalogue.memory().check(0); !room) return room.error();
   const ImportMeans means{catalogue.memory(), catalogue.scratch()};
@@ -133,8 +137,11 @@ Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesys
     const auto completeness = made->report ? Completeness::kSomeSamples : Completeness::kAllSamples;
     auto source = attach_source(made->terrain, std::move(made->source), completeness);
     if (progress.cancelled()) return tin::base::error(tin::base::Code::kCancelled, "Cancelled.");
-    return catalogue.create({request.id, request.title, std::move(made->terrain), request.duplicates,
-                             std::nullopt, unless_cancelled(std::move(source), progress)});
+    auto tin = catalogue.create({request.id, request.title, std::move(made->terrain), request.duplicates,
+                                 std::nullopt, unless_cancelled(std::move(source), progress)});
+    if (!tin) return tin.error();
+    return ImportedTin{*std::move(tin), made->report, made->out_of_time,
+                       std::chrono::duration<double>(Clock::now() - start).count()};
   } catch (const NoScratch& none) {
     return none.error();
   }

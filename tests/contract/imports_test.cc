@@ -66,6 +66,35 @@ TEST_F(ImportsTest, ClassesThatAreNoneChangeNothing) {
   EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
 }
 
+/// A client must not have to take the tolerance on trust.
+TEST_F(ImportsTest, WhatIsSimplifiedOnItsWayInSaysHowGoodItIs) {
+  const std::string grid = ascii_grid(8, 6);
+  const RawAnswer direct = upload("?id=direct&tolerance=30", grid);
+  ASSERT_EQ(direct.status, 201) << direct.body;
+  Json tin = Json::parse(direct.body), report = tin.at("simplification");
+  EXPECT_EQ(report.at("tin"), "direct");
+  EXPECT_EQ(report.at("revision"), tin.at("revision"));
+  EXPECT_EQ(report.at("samples"), 48);
+  EXPECT_EQ(report.at("verticesBefore"), 48);
+  EXPECT_EQ(report.at("verticesAfter"), tin.at("vertexCount"));
+  EXPECT_LE(report.at("maxError"), 30);
+  EXPECT_TRUE(report.at("maxErrorSample").contains("column"));
+  EXPECT_EQ(report.at("toleranceMet"), true);
+  EXPECT_EQ(report.at("certifiedAgainst"), "original samples");
+  const std::string job = server_.upload("/tins?id=later&tolerance=30", "text/plain", grid, "Prefer: respond-async\r\n")
+                              .header("location");
+  ASSERT_EQ(server_.finished(job), "successful");
+  Json later = Json::parse(server_.get(job + "/results").body).at("simplification");
+  EXPECT_EQ(later.at("tin"), "later");
+  for (const char* own : {"tin", "seconds"}) {
+    report.erase(own);
+    later.erase(own);
+  }
+  EXPECT_EQ(later, report);
+  EXPECT_FALSE(server_.tin("direct").contains("simplification"));
+  EXPECT_FALSE(Json::parse(upload("?id=whole", grid).body).contains("simplification"));
+}
+
 /// Nobody waits for it any more, so nothing comes of it.
 TEST_F(ImportsTest, AnUploadWhoseClientLeavesIsGivenUp) {
   const std::string before = server_.state(), grid = ascii_grid(1400, 1400);
