@@ -47,7 +47,9 @@ TEST_F(JobsTest, AJobThatWaitsIsDismissedAndNothingIsMade) {
   for (const std::string& job : {import, work}) {
     EXPECT_EQ(Json::parse(server_.get(job).body).at("status"), "accepted");
     EXPECT_EQ(Json::parse(server_.remove(job).body).at("status"), "dismissed");
-    EXPECT_EQ(server_.get(job + "/results").status, 410);
+    const RawAnswer gone = server_.get(job + "/results");
+    EXPECT_EQ(gone.status, 410);
+    EXPECT_EQ(Json::parse(gone.body).at("title"), "What was asked for is no longer kept");
   }
   busy.reset();
   EXPECT_EQ(server_.leftovers(), std::set<std::string>{}) << "a dismissed upload is not kept";
