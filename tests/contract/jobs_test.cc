@@ -99,6 +99,18 @@ TEST_F(JobsTest, AFinishedSimplificationIsANewRevisionOfTheTinItself) {
   EXPECT_LE(result.at("maxError"), 30);
 }
 
+/// How many vertices a terrain needs is found out by the work, which knows nothing of inputs.
+TEST_F(JobsTest, TooFewVerticesAreAnErrorOfTheInputThatAskedForThem) {
+  ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+  const RawAnswer refused =
+      server_.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"grid","maxVertices":3}})");
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_EQ(Json::parse(refused.body).at("where"), "/inputs/maxVertices") << refused.body;
+  const std::string job = simplify(R"({"tin":"grid","maxVertices":3})").header("location");
+  ASSERT_EQ(finished(job), "failed");
+  EXPECT_EQ(Json::parse(server_.get(job + "/results").body).at("where"), "/inputs/maxVertices");
+}
+
 /// OGC API Processes: the one output's value is the answer, unless it is wanted in a document.
 TEST_F(JobsTest, AResultStandsInADocumentWhereTheRequestSaysSo) {
   ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
