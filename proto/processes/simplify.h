@@ -72,6 +72,7 @@ struct SimplifyWorst {
 };
 
 struct SimplifyResults {
+  std::string crs, vertical_unit;  // the TIN's; null when empty: not known
   std::uint64_t vertices_before = 0;
   std::uint64_t vertices_after = 0;
   double max_error = 0;                // in the TIN's vertical unit, over every sample

@@ -142,6 +142,8 @@ tin::simplify::Against against_of(proto::SimplifyAgainst against) {
 
 proto::SimplifyResults results_of(const tin::simplify::Report& report, const tin::terrain::Terrain& terrain) {
   proto::SimplifyResults results;
+  results.crs = terrain.frame().crs;
+  results.vertical_unit = terrain.frame().vertical_unit;
   results.vertices_before = report.vertices_before;
   results.vertices_after = report.vertices_after;
   results.max_error = report.max_error;
