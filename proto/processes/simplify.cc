@@ -305,6 +305,7 @@ void write_simplify_report(JsonWriter& json, const SimplifyResults& results) {
   json.key("levelSamples").integer(results.level);
   json.key("surfaceCrossings").integer(results.crossings);
   json.key("samplesOutOfForce").integer(results.out_of_force);
+  if (results.duplicates) json.key("duplicates").integer(*results.duplicates);
   json.key("histogram").begin_object().key("bin").number(results.histogram_bin).key("counts").begin_array();
   for (const std::uint64_t count : results.histogram) json.integer(count);
   json.end_array().end_object();

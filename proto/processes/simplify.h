@@ -86,6 +86,7 @@ struct SimplifyResults {
   std::uint64_t crossings = 0;      // of edges with those of the samples' surface, the same
   bool out_of_time = false;         // the search was ended by a time budget
   std::uint64_t out_of_force = 0;   // samples of the source that edits put out of force
+  std::optional<std::uint64_t> duplicates;  // of a file: points that went because another stands at the same place
   double histogram_bin = 0;         // width; the last bin holds all above as well
   std::vector<std::uint64_t> histogram;
   double seconds = 0;

@@ -148,6 +148,7 @@ std::optional<proto::SimplifyResults> simplification_of(const app::ImportedTin& 
   });
   results.against_source = true;
   results.out_of_time = made.out_of_time;
+  results.duplicates = made.duplicates;
   results.seconds = made.seconds;
   results.tin = made.tin->id();
   results.revision = 1;

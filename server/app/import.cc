@@ -17,43 +17,57 @@ using tin::terrain::Terrain;
 
 namespace {
 
+/// How much of an import's progress has gone by when the file is read, when its points are triangulated, when
+/// as many of a raster's samples are chosen as are needed, and when the terrain is there.
+constexpr double kRead = 0.3, kPointsBuilt = 0.4, kChosen = 0.85, kBuilt = 0.9;
+
 SourceSamples raster_source(gdal::Import& import) {
   std::vector<std::uint64_t> valid = import.grid->valid;
   return SourceSamples::restored_raster(import.grid, std::move(import.heights), std::move(valid));
 }
 
-/// Every sample becomes a vertex.
-Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, Progress& progress) {
+/// Every sample becomes a vertex. Until `end` of the progress.
+Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, Progress& progress, double end) {
+  progress.begin_phase(kRead, end);
+  const std::size_t samples = import.placements.size();
   auto terrain = Terrain::build(std::move(import.frame), import.placements, duplicates, &progress, engine_threads());
   if (!terrain) return terrain.error();
   import.placements = {};
   terrain->set_source_grid(import.grid);
   SourceSamples source = import.grid ? raster_source(import) : vertices_as_source(*terrain);
-  return ImportedTerrain{std::move(*terrain), std::move(source), std::nullopt, false, std::move(import.driver)};
+  const std::size_t dropped = samples - terrain->vertex_count();
+  return ImportedTerrain{std::move(*terrain),      std::move(source), std::nullopt, false,
+                         std::move(import.driver), dropped};
 }
 
 /// A raster becomes a simplified terrain without one of all its samples.
 Result<ImportedTerrain> build_from_heights(gdal::Import import, const tin::simplify::Options& options,
                                            Progress& progress) {
   SourceSamples source = raster_source(import);
+  progress.begin_phase(kRead, kChosen);
   auto chosen = tin::simplify::simplify_samples(source, options, &progress);
   if (!chosen) return chosen.error();
+  progress.begin_phase(kChosen, kBuilt);
   auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress,
                                 engine_threads());
   if (!terrain) return terrain.error();
   terrain->set_source_grid(import.grid);
-  return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, false, std::move(import.driver)};
+  return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, false, std::move(import.driver), 0};
 }
 
 /// Points are triangulated first: that is how duplicates find each other.
 Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplicates,
                                           const tin::simplify::Options& options, Progress& progress) {
-  auto made = build_whole(std::move(import), duplicates, progress);
+  auto made = build_whole(std::move(import), duplicates, progress, kPointsBuilt);
   if (!made) return made.error();
+  progress.begin_phase(kPointsBuilt, kBuilt);
   auto outcome = tin::simplify::simplify(made->terrain, nullptr, {}, options, &progress);
   if (!outcome) return outcome.error();
   made->terrain = thinned(made->terrain, {std::move(outcome->removed), {}, std::move(outcome->reset)});
   made->report = outcome->report;
+  // Its samples were the vertices, of which no copy was needed; they are the source's points all the same.
+  if (auto& worst = made->report->worst; worst && !worst->between)
+    worst->source_index = made->source.find(worst->at);
   return made;
 }
 
@@ -72,7 +86,7 @@ std::uint64_t bytes_to_build(const gdal::Import& import, const ScratchSpace& scr
 
 Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request, const TimeBudget& budget,
                               const std::function<bool(std::size_t)>& room, Progress& progress) {
-  if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress);
+  if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress, kBuilt);
   tin::simplify::Options options = *request.simplify;
   options.out_of_time = budget.question();
   if (room) options.room = room;
@@ -97,7 +111,7 @@ store::Pieces unless_cancelled(store::Pieces pieces, const Progress& progress) {
 Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const ImportRequest& request,
                                        Progress& progress, const ImportMeans* means) {
   const TimeBudget budget(request.max_seconds);
-  progress.begin_phase(0, 0.3);
+  progress.begin_phase(0, kRead);
   gdal::ImportOptions options = request.options;
   options.heights_only = request.simplify.has_value();
   auto import = request.decoder.import_file(file, options, &progress);
@@ -114,10 +128,9 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
     lease.emplace(std::move(*given));
     room = [&lease](std::size_t bytes) { return lease->grow_to(bytes); };
   }
-  progress.begin_phase(0.3, 0.9);
   auto made = build(*std::move(import), request, budget, room, progress);
   if (!made && lease && lease->refusal()) return *lease->refusal();
-  if (made) progress.begin_phase(0.9, 1);
+  if (made) progress.begin_phase(kBuilt, 1);
   return made;
 }
 
@@ -141,7 +154,7 @@ Result<ImportedTin> import_tin(Catalogue& catalogue, const std::filesystem::path
                                  std::nullopt, unless_cancelled(std::move(source), progress)});
     if (!tin) return tin.error();
     return ImportedTin{*std::move(tin), made->report, made->out_of_time,
-                       std::chrono::duration<double>(Clock::now() - start).count()};
+                       std::chrono::duration<double>(Clock::now() - start).count(), made->duplicates};
   } catch (const NoScratch& none) {
     return none.error();
   }

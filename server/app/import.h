@@ -34,6 +34,7 @@ struct ImportedTerrain {
   std::optional<tin::simplify::Report> report;  // if it was simplified
   bool out_of_time = false;                     // max_seconds ended the search
   std::string driver;                           // GDAL's name of the format
+  std::size_t duplicates = 0;  // points that are no vertices of their own: another stands at the same place
 };
 
 /// The TIN that was made of a file.
@@ -42,6 +43,7 @@ struct ImportedTin {
   std::optional<tin::simplify::Report> report;  // if it was simplified
   bool out_of_time = false;                     // max_seconds ended the search
   double seconds = 0;                           // that it all took
+  std::size_t duplicates = 0;                   // as in ImportedTerrain
 };
 
 /// What an import may take of a server.

@@ -75,6 +75,7 @@ TEST_F(ImportsTest, WhatIsSimplifiedOnItsWayInSaysHowGoodItIs) {
   EXPECT_EQ(report.at("tin"), "direct");
   EXPECT_EQ(report.at("revision"), tin.at("revision"));
   EXPECT_EQ(report.at("samples"), 48);
+  EXPECT_EQ(report.at("duplicates"), 0);
   EXPECT_EQ(report.at("verticesBefore"), 48);
   EXPECT_EQ(report.at("verticesAfter"), tin.at("vertexCount"));
   EXPECT_LE(report.at("maxError"), 30);
@@ -93,6 +94,26 @@ TEST_F(ImportsTest, WhatIsSimplifiedOnItsWayInSaysHowGoodItIs) {
   EXPECT_EQ(later, report);
   EXPECT_FALSE(server_.tin("direct").contains("simplification"));
   EXPECT_FALSE(Json::parse(upload("?id=whole", grid).body).contains("simplification"));
+}
+
+/// Points at one place are one sample: the report says how many went so, and which point is worst of the rest.
+TEST_F(ImportsTest, WhatIsSimplifiedOfPointsTellsOfDuplicatesAndOfTheWorstPoint) {
+  std::string points = "x,y,z\n";
+  for (int x = 0; x < 5; ++x) {
+    for (int y = 0; y < 5; ++y)
+      points += std::to_string(x) + "," + std::to_string(y) + "," + (x == 3 && y == 1 ? "4" : "0") + "\n";
+  }
+  points += "2,2,0\n2,2,0\n4,4,0\n";
+  const RawAnswer made = upload("?id=points&tolerance=5&vertical-unit=foot&crs=EPSG:32632", points);
+  ASSERT_EQ(made.status, 201) << made.body;
+  const Json report = Json::parse(made.body).at("simplification");
+  EXPECT_EQ(report.at("samples"), 25);
+  EXPECT_EQ(report.at("duplicates"), 3);
+  EXPECT_EQ(report.at("maxError"), 4);
+  EXPECT_EQ(report.at("maxErrorAt"), (Json{3, 1}));
+  EXPECT_EQ(report.at("maxErrorSample"), (Json{{"z", 4}, {"index", 16}}));
+  EXPECT_EQ(report.at("verticalUnit"), "foot");
+  EXPECT_EQ(report.at("crs"), "EPSG:32632");
 }
 
 /// Nobody waits for it any more, so nothing comes of it.

@@ -180,6 +180,8 @@ TEST(SimplifyResultsTest, KeepTheContract) {
             R"("histogram":{"bin":5,"counts":[1000000,442401]},"outOfTime":true,"seconds":11.25,"editedMeanwhile":false,"tin":"hill","revision":5})");
   results.worst->column = results.worst->row = std::nullopt;
   results.worst->index = 17;
+  results.duplicates = 3;
+  results.vertical_unit = "metre";
   const std::string of_points = proto::simplify_results_json(results);
   expect_clean(violations("GET", "/jobs/{job}/results", 200, of_points), of_points);
   results.worst.reset();
