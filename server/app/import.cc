@@ -27,7 +27,8 @@ SourceSamples raster_source(gdal::Import& import) {
 }
 
 /// Every sample becomes a vertex. Until `end` of the progress.
-Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, Progress& progress, double end) {
+Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, Progress& progress,
+                                    double end) {
   progress.begin_phase(kRead, end);
   const std::size_t samples = import.placements.size();
   auto terrain = Terrain::build(std::move(import.frame), import.placements, duplicates, &progress, engine_threads());
@@ -52,7 +53,8 @@ Result<ImportedTerrain> build_from_heights(gdal::Import import, const tin::simpl
                                 engine_threads());
   if (!terrain) return terrain.error();
   terrain->set_source_grid(import.grid);
-  return ImportedTerrain{std::move(*terrain), std::move(source), chosen->report, false, std::move(import.driver), 0};
+  return ImportedTerrain{std::move(*terrain),      std::move(source), chosen->report, false,
+                         std::move(import.driver), 0};
 }
 
 /// Points are triangulated first: that is how duplicates find each other.
@@ -88,7 +90,7 @@ Result<ImportedTerrain> build(gdal::Import import, const ImportRequest& request,
                               const std::function<bool(std::size_t)>& room, Progress& progress) {
   if (!request.simplify) return build_whole(std::move(import), request.duplicates, progress, kBuilt);
   tin::simplify::Options options = *request.simplify;
-  options.out_of_time = budget.question();
+  options.out_of_time = budget.question(&progress);
   if (room) options.room = room;
   auto made = import.grid ? build_from_heights(std::move(import), options, progress)
                           : build_from_points(std::move(import), request.duplicates, options, progress);
@@ -134,8 +136,8 @@ Result<ImportedTerrain> import_terrain(const std::filesystem::path& file, const 
   return made;
 }
 
-Result<ImportedTin> import_tin(Catalogue& catalogue, const std::filesystem::path& file, const ImportRequest& request,
-                               Progress& progress) {
+Result<ImportedTin> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
+                               const ImportRequest& request, Progress& progress) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   if (auto room = catalogue.check_room(request.id); !room) return room.error();
