@@ -146,7 +146,9 @@ struct TinDocument {
   std::optional<SourceInfo> source;
   std::vector<Link> links;
 };
-std::string tin_json(const TinDocument& tin);
+struct SimplifyResults;  // processes/simplify.h
+/// With `simplification`: of a TIN that was simplified while it was made, and what that came to.
+std::string tin_json(const TinDocument& tin, const SimplifyResults* simplification = nullptr);
 
 struct TinList {
   std::vector<TinDocument> tins;

@@ -3,6 +3,7 @@
 #include "proto/edr.h"
 #include "proto/messages.h"
 #include "proto/messages_internal.h"
+#include "proto/processes/simplify.h"
 
 namespace proto {
 namespace {
@@ -41,7 +42,7 @@ void write_source(JsonWriter& json, const SourceInfo& source) {
   json.end_object();
 }
 
-void write_tin(JsonWriter& json, const TinDocument& tin) {
+void write_tin(JsonWriter& json, const TinDocument& tin, const SimplifyResults* simplification = nullptr) {
   json.begin_object();
   json.key("id").string(tin.id);
   json.key("title").string(tin.title);
@@ -64,6 +65,10 @@ void write_tin(JsonWriter& json, const TinDocument& tin) {
   if (tin.source) {
     json.key("source");
     write_source(json, *tin.source);
+  }
+  if (simplification != nullptr) {
+    json.key("simplification");
+    write_simplify_results(json, *simplification);
   }
   write_links(json, tin.links);
   json.end_object();
@@ -161,9 +166,9 @@ void write_links(JsonWriter& json, std::span<const Link> links) {
   json.end_array();
 }
 
-std::string tin_json(const TinDocument& tin) {
+std::string tin_json(const TinDocument& tin, const SimplifyResults* simplification) {
   JsonWriter json;
-  write_tin(json, tin);
+  write_tin(json, tin, simplification);
   return json.take();
 }
 

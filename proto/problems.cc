@@ -39,7 +39,7 @@ Row row_of(Code code) {
     case Code::kPrecondition:
       return {412, "precondition-failed", "The resource has changed"};
     case Code::kGone:
-      return {410, "gone", "The revision is no longer kept"};
+      return {410, "gone", "What was asked for is no longer kept"};
     case Code::kTooLarge:
       return {413, "too-large", "The request is larger than the limit"};
     case Code::kTooMany:

@@ -41,13 +41,15 @@ constexpr std::string_view kInputs = R"({
 })";
 
 constexpr std::string_view kResult = R"({"type":"object",
-"required":["verticesBefore","verticesAfter","maxError","maxErrorAt","maxErrorSample","toleranceMet","editedMeanwhile","rmse","certifiedAgainst","samples","levelSamples","surfaceCrossings","samplesOutOfForce","outOfTime","histogram","seconds","tin","revision"],
+"required":["verticesBefore","verticesAfter","maxError","maxErrorAt","maxErrorSample","crs","verticalUnit","toleranceMet","editedMeanwhile","rmse","certifiedAgainst","samples","levelSamples","surfaceCrossings","samplesOutOfForce","outOfTime","histogram","seconds","tin","revision"],
 "properties":{
 "verticesBefore":{"type":"integer","description":"Vertices before"},
 "verticesAfter":{"type":"integer","description":"Vertices after"},
 "maxError":{"type":"number","description":"Largest vertical distance to a source sample, in the TIN's vertical unit"},
 "maxErrorAt":{"type":"array","items":{"type":"number"},"minItems":2,"maxItems":2,"nullable":true,"description":"Where it is, in the TIN's CRS"},
 "maxErrorSample":{"type":"object","nullable":true,"description":"The sample there: its own height, and its place in the source (column and row of a raster, index of points by position); a vertex that somebody made has no place, nor has a place between samples, whose height is then the surface's","properties":{"z":{"type":"number"},"column":{"type":"integer"},"row":{"type":"integer"},"index":{"type":"integer"}}},
+"crs":{"type":"string","nullable":true,"description":"The TIN's CRS; null when it is not known"},
+"verticalUnit":{"type":"string","nullable":true,"description":"Unit of maxError, rmse and the histogram; null when it is not known"},
 "toleranceMet":{"type":"boolean","description":"Whether the tolerance holds; false only when maxVertices got in its way"},
 "editedMeanwhile":{"type":"boolean","description":"Whether others edited the TIN while the job worked; their edits stand. Where toleranceMet, the errors are those of the revision that came of both, else of the version that the job saw"},
 "rmse":{"type":"number","description":"Root mean square of the vertical distances"},
@@ -292,6 +294,10 @@ void write_simplify_report(JsonWriter& json, const SimplifyResults& results) {
   } else {
     json.key("maxErrorAt").null().key("maxErrorSample").null();
   }
+  json.key("crs");
+  results.crs.empty() ? json.null() : json.string(results.crs);
+  json.key("verticalUnit");
+  results.vertical_unit.empty() ? json.null() : json.string(results.vertical_unit);
   json.key("toleranceMet").boolean(results.tolerance_met);
   json.key("rmse").number(results.rmse);
   json.key("certifiedAgainst").string(results.against_source ? "original samples" : "vertices");
@@ -299,6 +305,7 @@ void write_simplify_report(JsonWriter& json, const SimplifyResults& results) {
   json.key("levelSamples").integer(results.level);
   json.key("surfaceCrossings").integer(results.crossings);
   json.key("samplesOutOfForce").integer(results.out_of_force);
+  if (results.duplicates) json.key("duplicates").integer(*results.duplicates);
   json.key("histogram").begin_object().key("bin").number(results.histogram_bin).key("counts").begin_array();
   for (const std::uint64_t count : results.histogram) json.integer(count);
   json.end_array().end_object();
@@ -306,14 +313,18 @@ void write_simplify_report(JsonWriter& json, const SimplifyResults& results) {
   json.key("seconds").number(results.seconds);
 }
 
-std::string simplify_results_json(const SimplifyResults& results) {
-  JsonWriter json;
+void write_simplify_results(JsonWriter& json, const SimplifyResults& results) {
   json.begin_object();
   write_simplify_report(json, results);
   json.key("editedMeanwhile").boolean(results.edited_meanwhile);
   json.key("tin").string(results.tin);
   json.key("revision").integer(results.revision);
   json.end_object();
+}
+
+std::string simplify_results_json(const SimplifyResults& results) {
+  JsonWriter json;
+  write_simplify_results(json, results);
   return json.take();
 }
 

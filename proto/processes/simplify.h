@@ -72,6 +72,7 @@ struct SimplifyWorst {
 };
 
 struct SimplifyResults {
+  std::string crs, vertical_unit;  // the TIN's; null when empty: not known
   std::uint64_t vertices_before = 0;
   std::uint64_t vertices_after = 0;
   double max_error = 0;                // in the TIN's vertical unit, over every sample
@@ -85,6 +86,7 @@ struct SimplifyResults {
   std::uint64_t crossings = 0;      // of edges with those of the samples' surface, the same
   bool out_of_time = false;         // the search was ended by a time budget
   std::uint64_t out_of_force = 0;   // samples of the source that edits put out of force
+  std::optional<std::uint64_t> duplicates;  // of a file: points that went because another stands at the same place
   double histogram_bin = 0;         // width; the last bin holds all above as well
   std::vector<std::uint64_t> histogram;
   double seconds = 0;
@@ -93,6 +95,8 @@ struct SimplifyResults {
 };
 /// The members that say how good the result is, those of an object that is open already.
 void write_simplify_report(JsonWriter& json, const SimplifyResults& results);
+/// The whole of it, as an object.
+void write_simplify_results(JsonWriter& json, const SimplifyResults& results);
 std::string simplify_results_json(const SimplifyResults& results);
 
 }  // namespace proto

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "proto/messages.h"
+#include "proto/processes/simplify.h"
 #include "server/api/answer.h"
 
 namespace server::api {
@@ -10,7 +11,8 @@ struct Context;
 
 proto::TinDocument tin_document(const app::Tin& tin);
 
-/// 201 with Location, ETag and the document.
-Response created_answer(const Context& context, const app::Tin& tin, const Request& request);
+/// 201 with Location, ETag and the document; with `simplification`, if there was one.
+Response created_answer(const Context& context, const app::Tin& tin, const Request& request,
+                        const proto::SimplifyResults* simplification = nullptr);
 
 }  // namespace server::api

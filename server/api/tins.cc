@@ -79,10 +79,11 @@ proto::TinDocument tin_document(const app::Tin& tin) {
   return document;
 }
 
-Response created_answer(const Context& context, const app::Tin& tin, const Request& request) {
+Response created_answer(const Context& context, const app::Tin& tin, const Request& request,
+                        const proto::SimplifyResults* simplification) {
   proto::TinDocument document = tin_document(tin);
   make_absolute(document.links, base_url(context.config, request));
-  Response response = json_answer(proto::tin_json(document), 201);
+  Response response = json_answer(proto::tin_json(document, simplification), 201);
   response.headers.emplace_back("Location", "/tins/" + tin.id());
   Request self;
   self.path = "/tins/" + tin.id();

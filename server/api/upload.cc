@@ -140,6 +140,21 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   return import;
 }
 
+/// What the simplification of an import came to, if there was one.
+std::optional<proto::SimplifyResults> simplification_of(const app::ImportedTin& made) {
+  if (!made.report) return std::nullopt;
+  auto results = made.tin->read([&](const tin::terrain::Terrain& terrain, std::uint64_t) {
+    return processes::results_of(*made.report, terrain);
+  });
+  results.against_source = true;
+  results.out_of_time = made.out_of_time;
+  results.duplicates = made.duplicates;
+  results.seconds = made.seconds;
+  results.tin = made.tin->id();
+  results.revision = 1;
+  return results;
+}
+
 /// Removes the file when the last copy goes: a job may be dismissed before it ever runs.
 struct OwnedFile {
   explicit OwnedFile(std::filesystem::path p) : path(std::move(p)) {}
@@ -160,7 +175,8 @@ Result<Response> import_as_job(Context& context, Request& request, app::ImportRe
       [&context, file, import = std::move(import)](tin::base::Progress& progress) -> Result<std::string> {
         const auto made = app::import_tin(context.catalogue, file->path, import, progress);
         if (!made) return made.error();
-        return proto::tin_json(tin_document(**made));
+        const auto simplification = simplification_of(*made);
+        return proto::tin_json(tin_document(*made->tin), simplification ? &*simplification : nullptr);
       });
   if (!job) return job.error();
   return job_accepted_answer(context.jobs, *job, request);
@@ -214,7 +230,8 @@ Result<Response> create_from_upload(Context& context, Request& request) {
   const http::Attention::Work unless_unwanted(request.attention, progress);
   const auto made = app::import_tin(context.catalogue, request.body_file, *import, progress);
   if (!made) return made.error();
-  return created_answer(context, **made, request);
+  const auto simplification = simplification_of(*made);
+  return created_answer(context, *made->tin, request, simplification ? &*simplification : nullptr);
 }
 
 }  // namespace server::api

@@ -34,6 +34,16 @@ struct ImportedTerrain {
   std::optional<tin::simplify::Report> report;  // if it was simplified
   bool out_of_time = false;                     // max_seconds ended the search
   std::string driver;                           // GDAL's name of the format
+  std::size_t duplicates = 0;  // points that are no vertices of their own: another stands at the same place
+};
+
+/// The TIN that was made of a file.
+struct ImportedTin {
+  std::shared_ptr<Tin> tin;
+  std::optional<tin::simplify::Report> report;  // if it was simplified
+  bool out_of_time = false;                     // max_seconds ended the search
+  double seconds = 0;                           // that it all took
+  std::size_t duplicates = 0;                   // as in ImportedTerrain
 };
 
 /// What an import may take of a server.
@@ -55,8 +65,7 @@ tin::base::Result<ImportedTerrain> import_terrain(const std::filesystem::path& f
 /// catalogue's scratch space. Errors: as gdal::import_file, Terrain::build, simplify::simplify and
 /// Catalogue::create; kTooLarge, kTooMany, kNoSpace (no room for temporary files); then nothing is left
 /// behind.
-tin::base::Result<std::shared_ptr<Tin>> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
-                                                   const ImportRequest& request,
-                                                   tin::base::Progress& progress);
+tin::base::Result<ImportedTin> import_tin(Catalogue& catalogue, const std::filesystem::path& file,
+                                          const ImportRequest& request, tin::base::Progress& progress);
 
 }  // namespace server::app

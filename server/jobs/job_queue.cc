@@ -163,7 +163,7 @@ Result<void> JobQueue::dismiss(std::string_view id) {
     dropped = std::move(job->work);
     std::erase(queued_, job);
     finish(*job, JobState::kDismissed, "dismissed before it began");
-  } else {
+  } else if (job->status.state != JobState::kDismissed) {
     job->status.state = JobState::kDismissed;
     job->status.message = "dismissed after it had finished";
     job->status.result.clear();

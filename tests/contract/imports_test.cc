@@ -66,6 +66,58 @@ TEST_F(ImportsTest, ClassesThatAreNoneChangeNothing) {
   EXPECT_EQ(server_.leftovers(), std::set<std::string>{});
 }
 
+/// A client must not have to take the tolerance on trust.
+TEST_F(ImportsTest, WhatIsSimplifiedOnItsWayInSaysHowGoodItIs) {
+  std::vector<std::vector<double>> rows(6, std::vector<double>(8, 100));
+  rows[2][3] = 110;
+  const std::string grid = ascii_grid(rows);
+  const RawAnswer direct = upload("?id=direct&tolerance=30", grid);
+  ASSERT_EQ(direct.status, 201) << direct.body;
+  Json tin = Json::parse(direct.body), report = tin.at("simplification");
+  EXPECT_EQ(report.at("tin"), "direct");
+  EXPECT_EQ(report.at("revision"), tin.at("revision"));
+  EXPECT_EQ(report.at("samples"), 48);
+  EXPECT_EQ(report.at("duplicates"), 0);
+  EXPECT_EQ(report.at("verticesBefore"), 48);
+  EXPECT_EQ(report.at("verticesAfter"), tin.at("vertexCount"));
+  EXPECT_EQ(report.at("maxError"), 10);
+  EXPECT_EQ(report.at("maxErrorSample"), (Json{{"z", 110}, {"column", 3}, {"row", 2}}));
+  EXPECT_EQ(report.at("toleranceMet"), true);
+  EXPECT_EQ(report.at("certifiedAgainst"), "original samples");
+  const std::string target = "/tins?id=later&tolerance=30", prefer = "Prefer: respond-async\r\n";
+  const std::string job = server_.upload(target, "text/plain", grid, prefer).header("location");
+  ASSERT_EQ(server_.finished(job), "successful");
+  Json later = Json::parse(server_.get(job + "/results").body).at("simplification");
+  EXPECT_EQ(later.at("tin"), "later");
+  for (const char* own : {"tin", "seconds"}) {
+    report.erase(own);
+    later.erase(own);
+  }
+  EXPECT_EQ(later, report);
+  EXPECT_FALSE(server_.tin("direct").contains("simplification"));
+  EXPECT_FALSE(Json::parse(upload("?id=whole", grid).body).contains("simplification"));
+}
+
+/// Points at one place are one sample: the report says how many went so, and which point is worst of the rest.
+TEST_F(ImportsTest, WhatIsSimplifiedOfPointsTellsOfDuplicatesAndOfTheWorstPoint) {
+  std::string points = "x,y,z\n";
+  for (int x = 0; x < 5; ++x) {
+    for (int y = 0; y < 5; ++y)
+      points += std::to_string(x) + "," + std::to_string(y) + "," + (x == 3 && y == 1 ? "4" : "0") + "\n";
+  }
+  points += "2,2,0\n2,2,0\n4,4,0\n";
+  const RawAnswer made = upload("?id=points&tolerance=5&vertical-unit=foot&crs=EPSG:32632", points);
+  ASSERT_EQ(made.status, 201) << made.body;
+  const Json report = Json::parse(made.body).at("simplification");
+  EXPECT_EQ(report.at("samples"), 25);
+  EXPECT_EQ(report.at("duplicates"), 3);
+  EXPECT_EQ(report.at("maxError"), 4);
+  EXPECT_EQ(report.at("maxErrorAt"), (Json{3, 1}));
+  EXPECT_EQ(report.at("maxErrorSample"), (Json{{"z", 4}, {"index", 16}}));
+  EXPECT_EQ(report.at("verticalUnit"), "foot");
+  EXPECT_EQ(report.at("crs"), "EPSG:32632");
+}
+
 /// Nobody waits for it any more, so nothing comes of it.
 TEST_F(ImportsTest, AnUploadWhoseClientLeavesIsGivenUp) {
   const std::string before = server_.state(), grid = ascii_grid(1400, 1400);

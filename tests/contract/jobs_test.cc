@@ -48,7 +48,9 @@ TEST_F(JobsTest, AJobThatWaitsIsDismissedAndNothingIsMade) {
   for (const std::string& job : {import, work}) {
     EXPECT_EQ(Json::parse(server_.get(job).body).at("status"), "accepted");
     EXPECT_EQ(Json::parse(server_.remove(job).body).at("status"), "dismissed");
-    EXPECT_EQ(server_.get(job + "/results").status, 410);
+    const RawAnswer gone = server_.get(job + "/results");
+    EXPECT_EQ(gone.status, 410);
+    EXPECT_EQ(Json::parse(gone.body).at("title"), "What was asked for is no longer kept");
   }
   busy.reset();
   EXPECT_EQ(server_.leftovers(), std::set<std::string>{}) << "a dismissed upload is not kept";
@@ -138,6 +140,18 @@ TEST_F(JobsTest, AFinishedSimplificationIsANewRevisionOfTheTinItself) {
   EXPECT_EQ(tin.at("vertexCount"), result.at("verticesAfter"));
   EXPECT_LT(result.at("verticesAfter"), result.at("verticesBefore"));
   EXPECT_LE(result.at("maxError"), 30);
+}
+
+/// How many vertices a terrain needs is found out by the work, which knows nothing of inputs.
+TEST_F(JobsTest, TooFewVerticesAreAnErrorOfTheInputThatAskedForThem) {
+  ASSERT_EQ(server_.upload("/tins?id=grid", "text/plain", ascii_grid(8, 6)).status, 201);
+  const RawAnswer refused =
+      server_.post_json("/processes/simplify/execution", R"({"inputs":{"tin":"grid","maxVertices":3}})");
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_EQ(Json::parse(refused.body).at("where"), "/inputs/maxVertices") << refused.body;
+  const std::string job = simplify(R"({"tin":"grid","maxVertices":3})").header("location");
+  ASSERT_EQ(finished(job), "failed");
+  EXPECT_EQ(Json::parse(server_.get(job + "/results").body).at("where"), "/inputs/maxVertices");
 }
 
 /// OGC API Processes: the one output's value is the answer, unless it is wanted in a document.

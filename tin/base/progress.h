@@ -5,7 +5,8 @@
 
 namespace tin::base {
 
-/// Shared between one worker, which reports, and anyone who watches or cancels. Thread-safe.
+/// Shared between one worker, which reports, and anyone who watches or cancels. Thread-safe. It never falls: who
+/// reports less than is known already, as one of several threads or of several measures, changes nothing.
 class Progress {
  public:
   Progress() = default;
@@ -15,7 +16,10 @@ class Progress {
 
   /// `fraction` of the present phase done, 0..1; without phases, of the work.
   void report(double fraction) {
-    fraction_.store(phase_begin_ + fraction * (phase_end_ - phase_begin_), std::memory_order_relaxed);
+    const double now = phase_begin_ + fraction * (phase_end_ - phase_begin_);
+    double known = fraction_.load(std::memory_order_relaxed);
+    while (known < now && !fraction_.compare_exchange_weak(known, now, std::memory_order_relaxed)) {
+    }
   }
   /// What is reported from now on is a part of the whole, from `begin` to `end`. For the worker.
   void begin_phase(double begin, double end) {

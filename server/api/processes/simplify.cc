@@ -46,6 +46,14 @@ std::string results_json(const app::Simplified& done) {
   return proto::simplify_results_json(results);
 }
 
+/// An error of the work, which knows no inputs: that fewer vertices remain than the terrain needs is found out
+/// there.
+tin::base::Error at_its_input(tin::base::Error error, const tin::simplify::Options& options) {
+  if (error.code == tin::base::Code::kInvalidValue && error.where.empty() && options.max_vertices)
+    error.where = "/inputs/maxVertices";
+  return error;
+}
+
 /// Errors: kUnknownVertex, where the id stands; kOutsideLattice.
 Result<app::Protection> protection_of(const app::Tin& tin, const proto::SimplifyProtect& asked) {
   app::Protection protect;
@@ -103,7 +111,7 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
       (*tin)->id(),
       [&context, wanted = std::move(wanted)](tin::base::Progress& progress) -> Result<std::string> {
         const auto done = app::simplify_tin(context.catalogue, wanted, progress);
-        if (!done) return done.error();
+        if (!done) return at_its_input(done.error(), wanted.options);
         return results_json(*done);
       }};
 }
@@ -134,6 +142,8 @@ tin::simplify::Against against_of(proto::SimplifyAgainst against) {
 
 proto::SimplifyResults results_of(const tin::simplify::Report& report, const tin::terrain::Terrain& terrain) {
   proto::SimplifyResults results;
+  results.crs = terrain.frame().crs;
+  results.vertical_unit = terrain.frame().vertical_unit;
   results.vertices_before = report.vertices_before;
   results.vertices_after = report.vertices_after;
   results.max_error = report.max_error;

@@ -157,6 +157,7 @@ TEST(SimplifyResultsTest, KeepTheContract) {
   proto::SimplifyResults results;
   results.vertices_before = 1442401;
   results.vertices_after = 17250;
+  results.crs = "EPSG:4326";
   results.max_error = 9.99;
   results.worst = proto::SimplifyWorst{-71.5, 44.25, 1203, 9.99, 600, 900, std::nullopt};
   results.rmse = 3.5;
@@ -173,12 +174,14 @@ TEST(SimplifyResultsTest, KeepTheContract) {
   results.revision = 5;
   EXPECT_EQ(proto::simplify_results_json(results),
             R"({"verticesBefore":1442401,"verticesAfter":17250,"maxError":9.99,"maxErrorAt":[-71.5,44.25],)"
-            R"("maxErrorSample":{"z":1203,"column":600,"row":900},"toleranceMet":true,)"
+            R"("maxErrorSample":{"z":1203,"column":600,"row":900},"crs":"EPSG:4326","verticalUnit":null,"toleranceMet":true,)"
             R"("rmse":3.5,"certifiedAgainst":"original samples","samples":1442401,"levelSamples":300,)"
             R"("surfaceCrossings":4000,"samplesOutOfForce":2,)"
             R"("histogram":{"bin":5,"counts":[1000000,442401]},"outOfTime":true,"seconds":11.25,"editedMeanwhile":false,"tin":"hill","revision":5})");
   results.worst->column = results.worst->row = std::nullopt;
   results.worst->index = 17;
+  results.duplicates = 3;
+  results.vertical_unit = "metre";
   const std::string of_points = proto::simplify_results_json(results);
   expect_clean(violations("GET", "/jobs/{job}/results", 200, of_points), of_points);
   results.worst.reset();

@@ -212,8 +212,10 @@ TEST(JobQueueTest, ARunningJobIsStopped) {
   const auto status = jobs.wait(id, kLong);
   EXPECT_EQ(status->state, JobState::kDismissed);
   EXPECT_FALSE(status->error);
-  ASSERT_TRUE(jobs.dismiss(id).ok());  // once more does no harm
+  EXPECT_EQ(status->message, "dismissed while it ran");
+  ASSERT_TRUE(jobs.dismiss(id).ok());  // once more does no harm, and does not say that it had finished
   EXPECT_EQ(state_of(jobs, id), JobState::kDismissed);
+  EXPECT_EQ(jobs.status(id)->message, "dismissed while it ran");
 }
 
 TEST(JobQueueTest, AJobThatWasDoneWhenDismissedSaysSo) {

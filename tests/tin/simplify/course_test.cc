@@ -220,6 +220,18 @@ TEST_F(SimplifyTest, TheTriangulationOfTheSamplesCanBeCancelledAndReportsNothing
   EXPECT_NE(tin::simplify::SourceMesh::of(*samples(), 2, nullptr), nullptr);
 }
 
+TEST(Progress, NeverFalls) {
+  Progress progress;
+  progress.begin_phase(0.25, 0.75);
+  progress.report(0.5);
+  progress.report(0.25);
+  EXPECT_EQ(progress.fraction(), 0.5);
+  progress.begin_phase(0.25, 0.75);
+  EXPECT_EQ(progress.fraction(), 0.5);
+  progress.begin_phase(0.75, 1);
+  EXPECT_EQ(progress.fraction(), 0.75);
+}
+
 TEST(Progress, APartThatReportsToNobodyIsCancelledWithTheWhole) {
   Progress whole, part(&whole);
   part.report(0.5);
