@@ -53,6 +53,7 @@ void add_content_options(CLI::App& command, ContentArguments& content) {
   command.add_option("--z-field", content.z_field, "Column or field of the heights, where its name does not say it");
   command.add_option("--class", content.classes, "Classes of the LAS points to take, such as 2,9; all unless given")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(0, 255));
 }
 
@@ -83,9 +84,11 @@ CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
                    "samples: each of them is within the tolerance; surface: so is all of the surface that they make")
       ->capture_default_str();
   const std::string plateau = std::to_string(proto::kPlateauSamples);
-  command->add_flag("--keep-flat{" + plateau + "}", arguments.keep_flat,
-                    "Do not tilt water and other plateaus of at least so many level samples: --keep-flat=N, or " +
-                        plateau + " for --keep-flat alone; off unless given");
+  command
+      ->add_flag("--keep-flat{" + plateau + "}", arguments.keep_flat,
+                 "Do not tilt water and other plateaus of at least so many level samples: --keep-flat=N, or " +
+                     plateau + " for --keep-flat alone; off unless given")
+      ->check(not_negative());
   command->add_option("--seed", arguments.seed, "Chooses the way of the search")
       ->check(not_negative())
       ->capture_default_str();

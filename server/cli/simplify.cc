@@ -96,7 +96,7 @@ void print_text(const SimplifyArguments& arguments, const proto::SimplifyResults
   std::printf("%s: %llu of %llu samples are vertices (%.2f %%)\n", arguments.output.c_str(),
               static_cast<unsigned long long>(results.vertices_after),
               static_cast<unsigned long long>(results.samples), ratio);
-  const std::string of = " " + (unit.empty() ? "in the file's own unit" : unit);
+  const std::string of = unit.empty() ? "" : " " + unit;
   std::printf("largest error %.6g%s", results.max_error, of.c_str());
   if (results.worst) {
     std::printf(" at %.10g, %.10g", results.worst->x, results.worst->y);
@@ -104,7 +104,8 @@ void print_text(const SimplifyArguments& arguments, const proto::SimplifyResults
       std::printf(" (column %llu, row %llu)", static_cast<unsigned long long>(*results.worst->column),
                   static_cast<unsigned long long>(*results.worst->row));
   }
-  std::printf("; RMSE %.6g%s; %.2f s\n", results.rmse, of.c_str(), results.seconds);
+  std::printf("; RMSE %.6g%s; %.2f s\n", results.rmse,
+              unit.empty() ? ", in the file's own unit" : of.c_str(), results.seconds);
 }
 
 /// Whether temporary files can be made there. Errors: kStorage.

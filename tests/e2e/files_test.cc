@@ -103,7 +103,8 @@ TEST_F(FilesTest, FilesAreTheServersByteForByte) {
       const Finished done = tinsmith(
           {"simplify", file, "--crs", crs, "-t", tolerance, "--effort", "fast", "-q", "-o", path(name)});
       ASSERT_EQ(done.status == 0, theirs.status == 200) << name << done.err;
-      if (done.status == 0) EXPECT_TRUE(contents(path(name)) == theirs.body) << name << " of " << crs;
+      if (done.status != 0) continue;
+      EXPECT_TRUE(contents(path(name)) == theirs.body) << name << " of " << crs;
     }
     served_->http().remove("/tins/out");
   }
