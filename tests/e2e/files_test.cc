@@ -43,11 +43,11 @@ class FilesTest : public ServedTest {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   /// Size x size random heights as an ASCII grid: slow to simplify.
-  std::string noise(int size) const {
+  std::string noise(int size, const std::string& cell = "10") const {
     std::mt19937 random(1);
     const std::string file = path("noise.asc");
     std::ofstream out(file);
-    out << "ncols " << size << "\nnrows " << size << "\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    out << "ncols " << size << "\nnrows " << size << "\nxllcorner 0\nyllcorner 0\ncellsize " << cell << "\n";
     for (int i = 0; i < size * size; ++i) out << random() % 1000 << ((i + 1) % size == 0 ? '\n' : ' ');
     return file;
   }
@@ -112,7 +112,7 @@ TEST_F(FilesTest, FilesAreTheServersByteForByte) {
 }
 
 TEST_F(FilesTest, WhatAFormatCannotSayIsRefusedBeforeTheWork) {
-  const Finished done = tinsmith({"simplify", noise(700), "--crs", "EPSG:4326", "-t", "1", "--effort", "best",
+  const Finished done = tinsmith({"simplify", noise(700, "0.01"), "--crs", "EPSG:4326", "-t", "1", "--effort", "best",
                                   "--max-seconds", "1000", "-o", path("out.xml")});
   EXPECT_EQ(done.status, 1);
   EXPECT_NE(done.err.find("LandXML"), std::string::npos) << done.err;
