@@ -1,12 +1,11 @@
 // Exports of vertices and triangles as features.
-#include "proto/crs_uri.h"
 #include "proto/formats/frame_note.h"
+#include "server/api/export_coordinates.h"
 #include "server/api/export_formats.h"
 #include "server/gdal/vector_export.h"
 
 namespace server::api {
 
-using proto::formats::Coordinates;
 using proto::formats::GeoJsonWriter;
 
 namespace {
@@ -16,13 +15,13 @@ constexpr std::size_t kPiece = 64 * 1024;
 /// A GeoJSON file made while the client takes it, from one version.
 class GeoJsonSource : public http::BodySource {
  public:
-  GeoJsonSource(const ExportTask& task, Positions positions, Coordinates coordinates,
-                const proto::formats::CollectionHead& head)
+  GeoJsonSource(const ExportTask& task, GeoJsonCoordinates coordinates)
       : version_(task.version),
         kind_(task.kind),
-        reader_(*version_.terrain, kind_, {}, std::move(positions), task.wanted.box, task.wanted.voids),
-        writer_(buffer_, coordinates) {
-    writer_.begin(head);
+        reader_(*version_.terrain, kind_, {}, std::move(coordinates.positions), task.wanted.box,
+                task.wanted.voids),
+        writer_(buffer_, coordinates.rounding) {
+    writer_.begin(coordinates.head);
   }
 
   bool next(std::string& piece) override {
@@ -96,23 +95,9 @@ Result<http::Body> vector_file(ExportTask& task, gdal::VectorDriver driver,
 }  // namespace
 
 Result<http::Body> export_geojson(ExportTask& task) {
-  const auto& frame = task.terrain().frame();
-  auto positions = Positions::to_geojson(frame);
-  Coordinates coordinates = frame.crs.empty() ? Coordinates::kProjected : Coordinates::kDegrees;
-  proto::formats::CollectionHead head;
-  if (!task.wanted.crs.empty()) {
-    const auto crs = gdal::read_crs(task.wanted.crs);
-    if (!crs) return tin::base::error(tin::base::Code::kInvalidValue, crs.error().message, "query:crs");
-    positions = Positions::between(frame.crs, crs->name, "query:crs");
-    coordinates = crs->scale.geographic ? Coordinates::kDegrees : Coordinates::kProjected;
-    if (crs->name != "EPSG:4326") head.crs_urn = proto::crs_urn(crs->name);
-  }
-  if (!positions) return positions.error();
-  if (positions->identity()) {
-    coordinates = Coordinates::kExact;
-    head.frame_note = proto::formats::frame_note(frame);
-  }
-  return http::Body(std::make_unique<GeoJsonSource>(task, std::move(*positions), coordinates, head));
+  auto coordinates = geojson_coordinates(task.terrain().frame(), task.wanted.crs);
+  if (!coordinates) return coordinates.error();
+  return http::Body(std::make_unique<GeoJsonSource>(task, std::move(*coordinates)));
 }
 
 Result<http::Body> export_geopackage(ExportTask& task) {

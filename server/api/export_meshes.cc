@@ -1,6 +1,7 @@
 // Exports that stream the mesh in one of proto/formats.
 #include "proto/formats/mesh_formats.h"
 #include "proto/formats/terrain_mesh.h"
+#include "server/api/export_coordinates.h"
 #include "server/api/export_formats.h"
 
 namespace server::api {
@@ -29,28 +30,14 @@ class MeshBody : public http::BodySource {
   MeshStream stream_;
 };
 
-/// The coordinates of the mesh: the TIN's own, or converted to the CRS that is asked for.
-Result<MeshRequest> mesh_request(const ExportTask& task) {
-  const auto& frame = task.terrain().frame();
-  MeshRequest request;
-  request.title = task.tin.title().empty() ? task.tin.id() : task.tin.title();
-  request.box = task.wanted.box;
-  request.voids = task.wanted.voids == tin::query::Voids::kFill ? proto::Voids::kFill : proto::Voids::kKeep;
-  request.check = [patience = task.patience] { return patience.check(); };
-  request.crs = task.wanted.crs.empty() ? frame.crs : task.wanted.crs;
-  if (!request.crs.empty()) {
-    const auto crs = gdal::read_crs(request.crs);
-    if (!crs) return tin::base::error(tin::base::Code::kInvalidValue, crs.error().message, "query:crs");
-    request.geographic = crs->scale.geographic;
-    request.unit_m = crs->scale.unit_m;
-  }
-  auto positions = Positions::between(frame.crs, request.crs, "query:crs");
-  if (!positions) return positions.error();
-  if (positions->identity()) return request;
-  request.convert = [shared = std::make_shared<Positions>(std::move(*positions))](
-                        std::span<double> x, std::span<double> y, std::vector<std::uint8_t>& ok) {
-    return shared->convert(x, y, ok);
-  };
+/// What the export asks for, of the TIN as it is or converted.
+Result<MeshRequest> request_of(const ExportTask& task) {
+  auto request = mesh_request(task.terrain().frame(), task.wanted.crs);
+  if (!request) return request;
+  request->title = task.tin.title().empty() ? task.tin.id() : task.tin.title();
+  request->box = task.wanted.box;
+  request->voids = task.wanted.voids == tin::query::Voids::kFill ? proto::Voids::kFill : proto::Voids::kKeep;
+  request->check = [patience = task.patience] { return patience.check(); };
   return request;
 }
 
@@ -59,7 +46,7 @@ Result<MeshRequest> mesh_request(const ExportTask& task) {
 Result<http::Body> export_mesh(ExportTask& task) {
   const Slot slot(task.context.exports);
   if (!slot.taken()) return too_many_exports();
-  auto request = mesh_request(task);
+  auto request = request_of(task);
   if (!request) return request.error();
   auto mesh = TerrainMesh::create(task.terrain(), std::move(*request));
   if (!mesh) return mesh.error();

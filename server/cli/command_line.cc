@@ -9,6 +9,7 @@
 #include "server/cli/output_file.h"
 #include "server/cli/serve.h"
 #include "server/cli/simplify.h"
+#include "server/cli/terminal.h"
 #include "server/cli/token.h"
 #include "server/gdal/decoder.h"
 #include "server/version.h"
@@ -16,6 +17,12 @@
 namespace server::cli {
 
 namespace {
+
+/// Of a number without a sign: the parser would take -1 for the largest of all.
+CLI::Validator not_negative() {
+  return CLI::Validator(
+      [](std::string& text) { return text.starts_with('-') ? "must not be negative" : std::string(); }, "");
+}
 
 CLI::App* add_serve(CLI::App& app, ServeArguments& arguments) {
   auto* command = app.add_subcommand("serve", "Serve TINs over HTTP until SIGTERM or SIGINT");
@@ -38,6 +45,18 @@ CLI::App* add_token(CLI::App& app, TokenArguments& arguments) {
   return command;
 }
 
+/// What a person may say of the content of a file, as clients of the server do.
+void add_content_options(CLI::App& command, ContentArguments& content) {
+  command.add_option("--crs", content.crs, "CRS of the file, in place of what it says: EPSG:n or WKT");
+  command.add_option("--format", content.format, "Format of the file, where its content leaves it open");
+  command.add_option("--layer", content.layer, "Layer of a vector file, surface of a LandXML; the first unless given");
+  command.add_option("--z-field", content.z_field, "Column or field of the heights, where its name does not say it");
+  command.add_option("--class", content.classes, "Classes of the LAS points to take, such as 2,9; all unless given")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(0, 255));
+}
+
 CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
   auto* command = app.add_subcommand(
       "simplify", "Make a TIN of few vertices that stays within a tolerance of every sample of a file");
@@ -48,8 +67,10 @@ CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
       ->required();
   command->add_option("-t,--tolerance", arguments.tolerance,
                       "Largest vertical distance to any sample, in the unit of the elevations");
-  command->add_option("--max-vertices", arguments.max_vertices,
-                      "No more vertices than these; goes before the tolerance (the exit status is 3 then)");
+  command
+      ->add_option("--max-vertices", arguments.max_vertices,
+                   "No more vertices than these; goes before the tolerance (the exit status is 3 then)")
+      ->check(not_negative());
   command->add_option("--max-seconds", arguments.max_seconds,
                       "Certify and write the best result so far once so much time is spent");
   command->add_option("--effort", arguments.effort, "fast, balanced, thorough or best")
@@ -62,13 +83,19 @@ CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
       ->add_option("--against", arguments.against,
                    "samples: each of them is within the tolerance; surface: so is all of the surface that they make")
       ->capture_default_str();
+  const std::string plateau = std::to_string(proto::kPlateauSamples);
   command
-      ->add_option("--keep-flat", arguments.keep_flat,
-                   "Do not tilt water and other plateaus of at least so many level samples")
-      ->expected(0, 1)
-      ->default_str(std::to_string(proto::kPlateauSamples));
-  command->add_option("--seed", arguments.seed, "Chooses the way of the search")->capture_default_str();
-  command->add_option("--threads", arguments.threads, "How many threads work; 0: as the processor has")
+      ->add_flag("--keep-flat{" + plateau + "}", arguments.keep_flat,
+                 "Do not tilt water and other plateaus of at least so many level samples: --keep-flat=N, or " +
+                     plateau + " for --keep-flat alone; off unless given")
+      ->check(not_negative());
+  command->add_option("--seed", arguments.seed, "Chooses the way of the search")
+      ->check(not_negative())
+      ->capture_default_str();
+  command
+      ->add_option("--threads", arguments.threads,
+                   "How many threads work, no more than the processor has; 0: as many as that")
+      ->check(not_negative())
       ->capture_default_str();
   command
       ->add_option("--memory", arguments.memory,
@@ -77,8 +104,9 @@ CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
       ->capture_default_str();
   command->add_option("--scratch", arguments.scratch,
                       "Folder of temporary files, on a disk; the output's unless given");
-  command->add_option("--crs", arguments.crs, "CRS of the file, in place of what it says: EPSG:n or WKT");
-  command->add_option("--format", arguments.format, "Format of the file, where its content leaves it open");
+  add_content_options(*command, arguments.content);
+  command->add_option("--duplicates", arguments.duplicates, "Of points at one position: replace (the last stays), keep, mean, max, min or reject")
+      ->capture_default_str();
   command->add_flag("--json", arguments.json, "Print the report as JSON");
   command->add_flag("-q,--quiet", arguments.quiet, "Print neither a report nor a progress bar");
   return command;
@@ -88,8 +116,7 @@ CLI::App* add_info(CLI::App& app, InfoArguments& arguments) {
   auto* command =
       app.add_subcommand("info", "Say what a file of elevations is: format, CRS, size, range of heights");
   command->add_option("file", arguments.file, "Raster of elevations, or points")->required();
-  command->add_option("--crs", arguments.crs, "CRS of the file, in place of what it says: EPSG:n or WKT");
-  command->add_option("--format", arguments.format, "Format of the file, where its content leaves it open");
+  add_content_options(*command, arguments.content);
   command->add_flag("--json", arguments.json, "Print JSON");
   return command;
 }
@@ -126,6 +153,9 @@ int run(int argc, char** argv) {
   CLI::App app("Tinsmith: adaptive terrain TINs, served over HTTP or made of files", "tinsmith");
   app.set_version_flag("--version", "tinsmith " + std::string(version()));
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App* all, const CLI::Error& error) {
+    return "tinsmith: " + CLI::FailureMessage::simple(all, error);
+  });
   ServeArguments serving;
   SimplifyArguments simplifying;
   InfoArguments informing;
@@ -143,7 +173,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return app.exit(error) == 0 ? 0 : kMisuse;
   }
   if (simplify_command->parsed()) return simplify(simplifying);
   if (info_command->parsed()) return info(informing);

@@ -8,7 +8,6 @@
 #include "proto/json_write.h"
 #include "server/cli/terminal.h"
 #include "server/gdal/import.h"
-#include "tin/codec/checkpoint.h"
 
 namespace server::cli {
 
@@ -66,6 +65,7 @@ void print_json(const InfoArguments& arguments, const gdal::Import& import, cons
     const auto& grid = *import.grid;
     json.key("width").integer(static_cast<std::uint64_t>(grid.width));
     json.key("height").integer(static_cast<std::uint64_t>(grid.height));
+    json.key("bands").integer(static_cast<std::uint64_t>(import.bands));
     json.key("dataType").string(grid.data_type);
     json.key("geotransform").begin_array();
     for (const double value : grid.geotransform) json.number(value);
@@ -99,6 +99,7 @@ void print_text(const InfoArguments& arguments, const gdal::Import& import, cons
     const auto& grid = *import.grid;
     const auto& gt = grid.geotransform;
     std::printf("Size: %d x %d pixels of type %s\n", grid.width, grid.height, grid.data_type.c_str());
+    if (import.bands > 1) std::printf("Bands: %d, of which the first is read\n", import.bands);
     std::printf("Origin: %.15g, %.15g\nPixel size: %.15g, %.15g\n", gt[0], gt[3], gt[1], gt[5]);
     if (grid.nodata) {
       std::printf("Nodata: %.15g\n", *grid.nodata);
@@ -116,11 +117,7 @@ void print_text(const InfoArguments& arguments, const gdal::Import& import, cons
 }  // namespace
 
 int info(const InfoArguments& arguments) {
-  gdal::ImportOptions options;
-  options.file_name = std::filesystem::path(arguments.file).filename();
-  options.crs = arguments.crs;
-  options.format = arguments.format;
-  options.max_pixels = options.max_samples = tin::codec::kMaxGridPixels;
+  gdal::ImportOptions options = import_options(arguments.file, arguments.content);
   options.heights_only = true;
   const auto import = gdal::import_file(arguments.file, options, nullptr);
   if (!import) return fail(arguments.file, import.error());

@@ -3,12 +3,13 @@
 
 #include <string>
 
+#include "server/cli/content.h"
+
 namespace server::cli {
 
 struct InfoArguments {
   std::string file;
-  std::string crs;     // in place of the file's
-  std::string format;  // empty: by its content
+  ContentArguments content;
   bool json = false;
 };
 

@@ -1,10 +1,15 @@
 #include "server/cli/simplify.h"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <new>
+#include <system_error>
 #include <utility>
 
 #include "proto/json_write.h"
@@ -16,7 +21,6 @@
 #include "server/app/threads.h"
 #include "server/cli/output_file.h"
 #include "server/cli/terminal.h"
-#include "tin/codec/checkpoint.h"
 
 namespace server::cli {
 
@@ -30,6 +34,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kToleranceNotMet = 3;
+constexpr std::uint64_t kFewestVertices = 3;
 
 Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
   if (!arguments.tolerance && !arguments.max_vertices)
@@ -38,12 +43,16 @@ Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
     return error(Code::kInvalidValue, "--tolerance must be a number that is not negative");
   if (arguments.max_seconds && !(*arguments.max_seconds > 0 && *arguments.max_seconds <= 1e9))
     return error(Code::kInvalidValue, "--max-seconds must be greater than 0");
+  if (arguments.max_vertices && *arguments.max_vertices < kFewestVertices)
+    return error(Code::kInvalidValue, "--max-vertices must be at least " + std::to_string(kFewestVertices));
   const auto effort = proto::parse_effort(arguments.effort, "");
   if (!effort) return error(effort.error().code, "--" + effort.error().message);
   const auto elevations = proto::parse_elevations(arguments.elevations, "");
   if (!elevations) return error(elevations.error().code, "--" + elevations.error().message);
   const auto against = proto::parse_against(arguments.against, "");
   if (!against) return error(against.error().code, "--" + against.error().message);
+  const auto duplicates = proto::parse_duplicates(arguments.duplicates, "");
+  if (!duplicates) return error(duplicates.error().code, "--" + duplicates.error().message);
   tin::simplify::Options options;
   options.tolerance = arguments.tolerance;
   if (arguments.max_vertices) options.max_vertices = static_cast<std::size_t>(*arguments.max_vertices);
@@ -52,22 +61,29 @@ Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
   options.against = api::processes::against_of(*against);
   options.keep_flat = static_cast<std::size_t>(arguments.keep_flat);
   options.seed = arguments.seed;
-  options.threads = arguments.threads == 0 ? app::engine_threads() : arguments.threads;
+  const unsigned all = app::engine_threads();
+  options.threads = arguments.threads == 0 ? all : std::min(arguments.threads, all);
   app::ImportRequest request;
   request.simplify = std::move(options);
   request.max_seconds = arguments.max_seconds;
-  request.options.file_name = std::filesystem::path(arguments.input).filename();
-  request.options.crs = arguments.crs;
-  request.options.format = arguments.format;
-  request.options.max_pixels = request.options.max_samples = tin::codec::kMaxGridPixels;
+  request.duplicates = *duplicates;
+  request.options = import_options(arguments.input, arguments.content);
   return request;
 }
 
-void print_json(const SimplifyArguments& arguments, const proto::SimplifyResults& results) {
+void write_or_null(proto::JsonWriter& json, const char* name, const std::string& text) {
+  json.key(name);
+  text.empty() ? json.null() : json.string(text);
+}
+
+void print_json(const SimplifyArguments& arguments, const proto::SimplifyResults& results,
+                const tin::frame::Frame& frame) {
   proto::JsonWriter json;
   json.begin_object();
   json.key("input").string(arguments.input);
   json.key("output").string(arguments.output);
+  write_or_null(json, "crs", frame.crs);
+  write_or_null(json, "verticalUnit", frame.vertical_unit);
   proto::write_simplify_report(json, results);
   json.end_object();
   std::printf("%s\n", json.take().c_str());
@@ -88,7 +104,14 @@ void print_text(const SimplifyArguments& arguments, const proto::SimplifyResults
       std::printf(" (column %llu, row %llu)", static_cast<unsigned long long>(*results.worst->column),
                   static_cast<unsigned long long>(*results.worst->row));
   }
-  std::printf("; RMSE %.6g%s; %.2f s\n", results.rmse, of.c_str(), results.seconds);
+  std::printf("; RMSE %.6g%s; %.2f s\n", results.rmse,
+              unit.empty() ? ", in the file's own unit" : of.c_str(), results.seconds);
+}
+
+/// Whether temporary files can be made there. Errors: kStorage.
+Result<void> check_scratch(const fs::path& folder) {
+  if (folder.empty() || ::access((folder / "").c_str(), W_OK | X_OK) == 0) return {};
+  return error(Code::kStorage, "cannot hold temporary files: " + std::generic_category().message(errno));
 }
 
 fs::path folder_of(const fs::path& file) {
@@ -100,8 +123,15 @@ fs::path folder_of(const fs::path& file) {
 int simplify(const SimplifyArguments& arguments) {
   const auto start = Clock::now();
   auto request = request_of(arguments);
-  if (!request) return fail("", request.error());
-  if (auto fine = check_output(arguments.output); !fine) return fail(arguments.output, fine.error());
+  if (!request) return misuse("", request.error());
+  if (auto fine = check_output_name(arguments.output); !fine) return misuse(arguments.output, fine.error());
+  if (auto fine = check_output(arguments.output, arguments.input); !fine) return fail(arguments.output, fine.error());
+  if (auto fine = check_scratch(arguments.scratch); !fine) return fail(arguments.scratch, fine.error());
+  int bands = 1;
+  request->options.look = [&](const gdal::Import& import) {
+    bands = import.bands;
+    return check_output_frame(arguments.output, import.frame);
+  };
   app::ScratchMemory scratch({arguments.memory << 20, arguments.scratch.empty() ? folder_of(arguments.output)
                                                                                 : fs::path(arguments.scratch)});
   request->options.memory = request->simplify->memory = &scratch;
@@ -129,8 +159,9 @@ int simplify(const SimplifyArguments& arguments) {
   results.out_of_time = result.out_of_time;
   results.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
-    print_json(arguments, results);
+    print_json(arguments, results, result.terrain.frame());
   } else if (!arguments.quiet) {
+    if (bands > 1) std::printf("%s: the first of %d bands is read\n", arguments.input.c_str(), bands);
     print_text(arguments, results, result.terrain.frame().vertical_unit);
   }
   if (results.tolerance_met) return 0;

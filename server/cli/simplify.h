@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "server/cli/content.h"
+
 namespace server::cli {
 
 /// What stands on the command line.
@@ -22,13 +24,13 @@ struct SimplifyArguments {
   unsigned threads = 0;        // 0: the processor's
   std::uint64_t memory = 1024;  // megabytes of a raster's samples that are held at a time
   std::string scratch;          // folder of temporary files; empty: the output's
-  std::string crs;       // in place of the file's
-  std::string format;    // of the input; empty: by its content
+  ContentArguments content;      // of the input
+  std::string duplicates = "replace";
   bool json = false;     // the report as JSON
   bool quiet = false;    // neither report nor bar
 };
 
-/// Returns the exit status: 0; 1 when something is wrong; 3 when --max-vertices got in the way of
+/// Returns the exit status: 0; 1 when something is wrong; 2 when the arguments make no sense; 3 when --max-vertices got in the way of
 /// --tolerance; 128 and the signal's number when one stopped it, and then nothing is written.
 int simplify(const SimplifyArguments& arguments);
 

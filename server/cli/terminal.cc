@@ -42,6 +42,11 @@ int fail(const std::string& file, const tin::base::Error& error) {
   return 1;
 }
 
+int misuse(const std::string& file, const tin::base::Error& error) {
+  fail(file, error);
+  return kMisuse;
+}
+
 ProgressBar::ProgressBar(const tin::base::Progress& progress, bool wanted) {
   if (!wanted || isatty(STDERR_FILENO) == 0) return;
   painter_ = std::jthread([&progress](const std::stop_token& stop) {
@@ -62,11 +67,14 @@ CancelOnSignal::CancelOnSignal(tin::base::Progress& progress) {
   watched.store(&progress);
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
+  hang_up_ = std::signal(SIGHUP, note_signal);
+  if (hang_up_ == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 CancelOnSignal::~CancelOnSignal() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGHUP, hang_up_);
   watched.store(nullptr);
 }
 

@@ -9,8 +9,13 @@
 
 namespace server::cli {
 
+/// The exit status of a command line that makes no sense.
+inline constexpr int kMisuse = 2;
+
 /// Says "tinsmith: FILE: what is wrong" on standard error. Returns the exit status, 1.
 int fail(const std::string& file, const tin::base::Error& error);
+/// The same of what the command line says. Returns kMisuse.
+int misuse(const std::string& file, const tin::base::Error& error);
 
 /// Shows a bar on standard error while it lives, if that is a terminal and it is wanted.
 class ProgressBar {
@@ -24,7 +29,8 @@ class ProgressBar {
   std::jthread painter_;
 };
 
-/// While it lives, SIGINT and SIGTERM cancel the work in place of ending the program. One at a time.
+/// While it lives, SIGINT, SIGTERM and SIGHUP cancel the work in place of ending the program; SIGHUP not where it was ignored
+/// before, as nohup has it. One at a time.
 class CancelOnSignal {
  public:
   explicit CancelOnSignal(tin::base::Progress& progress);
@@ -34,6 +40,9 @@ class CancelOnSignal {
 
   /// What came: 0 if nothing did. The exit status is then 128 and this.
   static int signal();
+
+ private:
+  void (*hang_up_)(int) = nullptr;  // who took SIGHUP before
 };
 
 }  // namespace server::cli

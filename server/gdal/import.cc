@@ -53,7 +53,10 @@ Result<RawPoints> read_points(const ImportTask& task) {
 Result<Import> import_points(const ImportTask& task) {
   auto raw = read_points(task);
   if (!raw) return raw.error();
-  return place_points(task, *std::move(raw));
+  auto import = place_points(task, *std::move(raw));
+  if (!import || !task.options.look) return import;
+  if (auto fine = task.options.look(*import); !fine) return fine.error();
+  return import;
 }
 
 bool holds_raster(Format format) {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <memory_resource>
 #include <span>
@@ -22,6 +23,8 @@
 #include "tin/terrain/source_samples.h"
 
 namespace server::gdal {
+
+struct Import;
 
 /// What the client says about its file, none of it trusted, and the limits.
 struct ImportOptions {
@@ -43,6 +46,9 @@ struct ImportOptions {
   bool heights_only = false;
   /// Where a raster's heights go.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  /// Shown what is known before a raster's pixels are read, or after points are: an error ends the import. For files that
+  /// are read in this process: a decoder process is not told.
+  std::function<tin::base::Result<void>(const Import&)> look;
 };
 
 /// What a file holds, on a lattice that fits it.
@@ -54,6 +60,7 @@ struct Import {
   std::shared_ptr<tin::terrain::SourceGrid> grid;  // null for points
   tin::terrain::SourceSamples::Heights heights;    // of a raster: one per pixel, row by row
   std::string driver;                              // GDAL's name of the format, or "CSV"
+  std::int32_t bands = 0;                          // of a raster, whose first is read
 };
 
 /// Takes the heights of a raster as they are read, for one who does not hold them all.
@@ -82,7 +89,7 @@ class RowTaker {
 ///
 /// Errors: kInvalidValue (empty file or raster, no valid sample, no georeference, an HGT without its name, no
 /// heights, unknown layer or field), kUnsupported (format, CRS, rotated raster, complex pixels), kMalformed
-/// (with the line for text), kNotFinite, kTooLarge, kCancelled, kStorage. Threads: any number at once on
+/// (with the line for text), kNotFinite, kTooLarge, kCancelled, kStorage, those of options.look. Threads: any number at once on
 /// different files. `progress` may be null. With `rows` and options.heights_only a raster's heights and mask
 /// go there, and the import is without them.
 tin::base::Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOptions& options,

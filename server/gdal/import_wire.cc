@@ -116,8 +116,8 @@ bool send_array(char kind, std::span<const T> items, const Sink& sink) {
 template <class Options, class Visit>
 void visit_options(Options& options, Visit visit) {
   auto& [file_name, content_type, format, crs, resolution_x, resolution_y, layer, z_field, classes, max_samples,
-         max_pixels, max_unpacked_bytes, heights_only, memory] = options;
-  static_cast<void>(memory);  // each end has its own
+         max_pixels, max_unpacked_bytes, heights_only, memory, look] = options;
+  static_cast<void>(memory), static_cast<void>(look);  // each end has its own
   visit(file_name), visit(content_type), visit(format), visit(crs);
   visit(resolution_x), visit(resolution_y), visit(layer), visit(z_field);
   visit(classes), visit(max_samples), visit(max_pixels), visit(max_unpacked_bytes), visit(heights_only);
@@ -229,11 +229,12 @@ bool send_progress(double fraction, const Sink& sink) {
 namespace {
 
 bool send_head(const Import& import, bool in_rows, const Sink& sink) {
-  const auto& [frame, placements, grid, heights, driver] = import;
+  const auto& [frame, placements, grid, heights, driver, bands] = import;
   Writer out;
   const auto put = [&](const auto& member) { out.put(member); };
   visit_frame(frame, put);
   out.put(driver);
+  out.put(bands);
   out.put(std::uint64_t{placements.size()});
   out.put(static_cast<char>(heights.stored.index()));
   out.put(heights.shift);
@@ -252,7 +253,7 @@ bool send_head(const Import& import, bool in_rows, const Sink& sink) {
 }  // namespace
 
 bool send_import(const Import& import, const Sink& sink) {
-  const auto& [frame, placements, grid, heights, driver] = import;
+  const auto& [frame, placements, grid, heights, driver, bands] = import;
   return send_head(import, false, sink) && send_array(kPlacements, std::span(placements), sink) &&
          (!grid || send_array(kMask, std::span(std::as_const(grid->valid)), sink)) &&
          std::visit([&](const auto& numbers) { return send_array(kHeights, std::span(numbers), sink); },
@@ -334,6 +335,7 @@ Result<void> ImportReceiver::take_head(std::string_view body) {
   const auto get = [&](auto& member) { in.get(member); };
   visit_frame(import.frame, get);
   in.get(import.driver);
+  in.get(import.bands);
   in.get(placements_);
   char kind_of_heights = 0;
   in.get(kind_of_heights);

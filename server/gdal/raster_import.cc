@@ -191,6 +191,7 @@ Result<Import> fit(const ImportTask& task, GDALDataset& dataset) {
   import.frame = *std::move(frame);
   describe_frame(import.frame, *crs, vertical_unit(dataset.GetRasterBand(1)->GetUnitType()));
   import.driver = driver_name(task.format);
+  import.bands = dataset.GetRasterCount();
   import.grid = std::make_shared<tin::terrain::SourceGrid>();
   tin::terrain::SourceGrid& grid = *import.grid;
   const auto parts_y = static_cast<std::int32_t>(import.frame.y.parts);
@@ -304,6 +305,9 @@ Result<Import> import_raster(const ImportTask& task) {
   // Scaled values are no longer of the file's type, and its nodata value may be one of them.
   import->grid->data_type = samples->scaled() ? "Float64" : GDALGetDataTypeName(band.GetRasterDataType());
   if (!samples->scaled()) import->grid->nodata = samples->nodata();
+  if (task.options.look) {
+    if (auto fine = task.options.look(*import); !fine) return fine.error();
+  }
   if (auto bad = read_samples(task, band, *samples, *import)) return *std::move(bad);
   return import;
 }

@@ -38,12 +38,16 @@ class FilesTest : public ServedTest {
     }
     return largest;
   }
+  static std::string contents(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
   /// Size x size random heights as an ASCII grid: slow to simplify.
-  std::string noise(int size) const {
+  std::string noise(int size, const std::string& cell = "10") const {
     std::mt19937 random(1);
     const std::string file = path("noise.asc");
     std::ofstream out(file);
-    out << "ncols " << size << "\nnrows " << size << "\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    out << "ncols " << size << "\nnrows " << size << "\nxllcorner 0\nyllcorner 0\ncellsize " << cell << "\n";
     for (int i = 0; i < size * size; ++i) out << random() % 1000 << ((i + 1) % size == 0 ? '\n' : ' ');
     return file;
   }
@@ -79,9 +83,40 @@ TEST_F(FilesTest, TheServerComesToTheSameTriangles) {
   start();
   ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);
   const Json result = served_->simplify({{"tin", "dem"}, {"tolerance", 10}, {"effort", "fast"}});
-  const Json tin = served_->get("/tins/dem");
-  EXPECT_EQ(tin.at("triangleCount"), triangles.at("features").size());
+  const Json theirs = served_->get("/tins/dem/export?f=geojson");
+  EXPECT_EQ(theirs.at("features").size(), triangles.at("features").size());
   EXPECT_EQ(misses.largest > 0, result.at("maxError") > 0);
+}
+
+TEST_F(FilesTest, FilesAreTheServersByteForByte) {
+  const std::string feet = noise(40);
+  const Json inputs[] = {{{"file", sample_file("luxembourg").string()}, {"crs", "EPSG:4326"}, {"tolerance", "10"}},
+                         {{"file", feet}, {"crs", "EPSG:2992"}, {"tolerance", "200"}}};
+  const std::pair<const char*, const char*> formats[] = {
+      {"out.geojson", "geojson"}, {"out.glb", "glb"}, {"out.ply", "ply"}, {"out.xml", "landxml"}};
+  start();
+  for (const Json& input : inputs) {
+    const std::string file = input.at("file"), crs = input.at("crs"), tolerance = input.at("tolerance");
+    ASSERT_EQ(served_->upload("?id=out&effort=fast&tolerance=" + tolerance + "&crs=" + crs, file).status, 201);
+    for (const auto& [name, f] : formats) {
+      const RawAnswer theirs = served_->http().get(std::string("/tins/out/export?f=") + f);
+      const Finished done = tinsmith(
+          {"simplify", file, "--crs", crs, "-t", tolerance, "--effort", "fast", "-q", "-o", path(name)});
+      ASSERT_EQ(done.status == 0, theirs.status == 200) << name << done.err;
+      if (done.status != 0) continue;
+      EXPECT_TRUE(contents(path(name)) == theirs.body) << name << " of " << crs;
+    }
+    served_->http().remove("/tins/out");
+  }
+  EXPECT_NE(contents(path("out.xml")).find("linearUnit=\"foot\""), std::string::npos);
+}
+
+TEST_F(FilesTest, WhatAFormatCannotSayIsRefusedBeforeTheWork) {
+  const Finished done = tinsmith({"simplify", noise(700, "0.01"), "--crs", "EPSG:4326", "-t", "1", "--effort", "best",
+                                  "--max-seconds", "1000", "-o", path("out.xml")});
+  EXPECT_EQ(done.status, 1);
+  EXPECT_NE(done.err.find("LandXML"), std::string::npos) << done.err;
+  EXPECT_EQ(files(), 1U);
 }
 
 TEST_F(FilesTest, ElevationsThatFitPlateausAndTheSurfaceAreOptions) {
@@ -149,21 +184,30 @@ TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
     const Finished done = tinsmith(words);
     EXPECT_EQ(done.status, status) << word << done.err;
     EXPECT_EQ(done.out, "");
+    EXPECT_TRUE(done.err.starts_with("tinsmith: ")) << done.err;
     EXPECT_NE(done.err.find(word), std::string::npos) << done.err;
   };
   const std::string out = path("out.tif");
   std::ofstream(out) << "as it was";
   std::ofstream(path("text.txt")) << "no elevations\n";
-  expect({input, "-o", out}, 1, "--tolerance or --max-vertices");
-  expect({input, "-o", out, "-t", "-1"}, 1, "--tolerance");
-  expect({input, "-o", out, "-t", "nan"}, 1, "--tolerance");
+  expect({input, "-o", out}, 2, "--tolerance or --max-vertices");
+  expect({input, "-o", out, "-t", "-1"}, 2, "--tolerance");
+  expect({input, "-o", out, "-t", "nan"}, 2, "--tolerance");
   expect({input, "-o", out, "-t", "much"}, 2, "tolerance");
-  expect({input, "-o", out, "-t", "1", "--effort", "most"}, 1, "--effort");
-  expect({input, "-o", out, "-t", "1", "--elevations", "any"}, 1, "--elevations");
-  expect({input, "-o", out, "-t", "1", "--against", "points"}, 1, "--against");
-  expect({input, "-o", out, "-t", "1", "--keep-flat", "some"}, 2, "--keep-flat");
+  expect({input, "-o", out, "-t", "1", "--effort", "most"}, 2, "--effort");
+  expect({input, "-o", out, "-t", "1", "--elevations", "any"}, 2, "--elevations");
+  expect({input, "-o", out, "-t", "1", "--against", "points"}, 2, "--against");
+  expect({input, "-o", out, "-t", "1", "--keep-flat=some"}, 2, "keep-flat");
+  expect({input, "-o", out, "-t", "1", "--keep-flat=-4"}, 2, "keep-flat");
+  expect({input, "-o", out, "-t", "1", "--max-seconds", "0"}, 2, "--max-seconds");
+  expect({input, "-o", out, "--max-vertices", "-5"}, 2, "--max-vertices");
+  expect({input, "-o", out, "--max-vertices", "2"}, 2, "--max-vertices");
+  expect({input, "-o", out, "-t", "1", "--seed", "-1"}, 2, "--seed");
+  expect({input, "-o", out, "-t", "1", "--threads", "-1"}, 2, "--threads");
+  expect({input, "-o", out, "-t", "1", "--duplicates", "most"}, 2, "--duplicates");
+  expect({input, "-o", out, "-t", "1", "--class", "300"}, 2, "--class");
   expect({input, "-t", "1"}, 2, "--output");
-  expect({input, "-o", path("out.doc"), "-t", "1"}, 1, ".geojson");
+  expect({input, "-o", path("out.doc"), "-t", "1"}, 2, ".geojson");
   expect({input, "-o", path("no/such/out.tif"), "-t", "1"}, 1, "No such file");
   expect({path("nowhere.tif"), "-o", out, "-t", "1"}, 1, "nowhere.tif");
   expect({path("text.txt"), "-o", out, "-t", "1"}, 1, "text.txt");
@@ -174,18 +218,93 @@ TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
   EXPECT_EQ(files(), 2U);
 }
 
-TEST_F(FilesTest, AnInterruptStopsItWithinASecondAndLeavesNothing) {
+TEST_F(FilesTest, PlacesThatCannotBeWrittenAreRefusedBeforeTheWork) {
+  const std::string input = noise(700), dem = path("dem.tif"), scratch = path("no/scratch");
+  fs::copy_file(sample_file("olinda"), dem);
+  fs::create_directory(path("folder.tif"));
+  fs::create_symlink("folder.tif", path("link.tif"));
+  fs::create_hard_link(dem, path("same.tif"));
+  const auto expect = [&](const std::string& in, const std::string& out, const std::string& word) {
+    const Finished done = tinsmith(
+        {"simplify", in, "-t", "1", "--effort", "best", "-o", out, "--scratch", word == scratch ? scratch : path("")});
+    EXPECT_EQ(done.status, 1) << out;
+    EXPECT_NE(done.err.find(word), std::string::npos) << done.err;
+  };
+  expect(dem, dem, "not overwritten");
+  expect(dem, path("same.tif"), "not overwritten");
+  expect(input, path("folder.tif"), "folder");
+  expect(input, path("link.tif"), "folder");
+  expect(input, path(std::string(250, 'n') + ".tif"), "too long");
+  expect(input, path("out.tif"), scratch);
+  EXPECT_EQ(contents(dem), contents(sample_file("olinda")));
+  EXPECT_EQ(files(), 5U);
+}
+
+TEST_F(FilesTest, ALinkStaysAndWhatItNamesIsWritten) {
+  fs::create_directory(path("there"));
+  fs::create_symlink("there/out.ply", path("link.ply"));
+  for (int again = 0; again < 2; ++again) {
+    const Finished done = tinsmith({"simplify", sample_file("olinda"), "-t", "10", "-q", "-o", path("link.ply")});
+    ASSERT_EQ(done.status, 0) << done.err;
+    EXPECT_TRUE(fs::is_symlink(path("link.ply")));
+    EXPECT_TRUE(contents(path("there/out.ply")).starts_with("ply"));
+    EXPECT_EQ(files(), 2U);
+  }
+}
+
+TEST_F(FilesTest, AWriteThatFailsSaysWhy) {
+  const std::string command = "trap '' XFSZ; ulimit -f 1; exec " + std::string(TINSMITH_PROGRAM) + " simplify " +
+                              sample_file("olinda").string() + " --effort fast -t 1 -q -o " + folder_.path().string();
+  for (const char* name : {"/out.geojson", "/out.ply"}) {
+    const Finished done = support::run({"sh", "-c", command + name});
+    EXPECT_EQ(done.status, 1);
+    EXPECT_NE(done.err.find("File too large"), std::string::npos) << done.err;
+  }
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(FilesTest, ASignalStopsItWithinASecondAndLeavesNothing) {
   const std::string input = noise(700);
-  support::Child child(
-      {TINSMITH_PROGRAM, "simplify", input, "-t", "1", "--effort", "best", "-o", path("out.tif")},
-      path("err.txt"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
-  const auto asked = std::chrono::steady_clock::now();
-  child.signal(SIGINT);
-  EXPECT_EQ(child.wait(), 128 + SIGINT);
-  EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(3))
-      << "a second, on a machine at rest";
-  EXPECT_EQ(files(), 2U) << "the input and what was said";
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    support::Child child(
+        {TINSMITH_PROGRAM, "simplify", input, "-t", "1", "--effort", "best", "-o", path("out.tif")},
+        path("err.txt"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    const auto asked = std::chrono::steady_clock::now();
+    child.signal(number);
+    EXPECT_EQ(child.wait(), 128 + number);
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(3))
+        << "a second, on a machine at rest";
+    EXPECT_EQ(files(), 2U) << "the input and what was said";
+  }
+}
+
+TEST_F(FilesTest, ReportsNameTheCrsTheUnitAndTheBandsThatAreNotRead) {
+  const std::string dem = sample_file("olinda"), two = path("two.tif");
+  ASSERT_EQ(support::run({"gdal_translate", "-q", "-b", "1", "-b", "1", dem, two}).status, 0);
+  const std::vector<std::string> words{"simplify", two, "-t", "10", "-o", path("out.ply")};
+  auto as_json = words;
+  as_json.push_back("--json");
+  const Json report = Json::parse(tinsmith(as_json).out), info = Json::parse(tinsmith({"info", two, "--json"}).out);
+  EXPECT_EQ(report.at("crs"), info.at("crs"));
+  EXPECT_EQ(report.at("verticalUnit"), info.at("verticalUnit"));
+  EXPECT_EQ(info.at("bands"), 2);
+  EXPECT_NE(tinsmith(words).out.find("first of 2 bands"), std::string::npos);
+  EXPECT_NE(tinsmith({"info", two}).out.find("Bands: 2"), std::string::npos);
+  const Finished bare = tinsmith({"simplify", noise(20), "-t", "10", "-o", path("out.ply")});
+  EXPECT_NE(bare.out.find("in the file's own unit"), std::string::npos) << bare.out;
+}
+
+TEST_F(FilesTest, TheContentOfPointsIsSaidAsToTheServer) {
+  std::ofstream(path("points.csv")) << "x,y,depth\n0,0,3\n9,0,4\n0,9,5\n9,0,6\n";
+  EXPECT_EQ(tinsmith({"info", path("points.csv"), "--z-field", "none"}).status, 1);
+  const Finished info = tinsmith({"info", path("points.csv"), "--z-field", "depth", "--json"});
+  EXPECT_EQ(Json::parse(info.out).at("zRange"), Json::array({3, 6})) << info.err;
+  for (const auto& [duplicates, status] : {std::pair("reject", 1), std::pair("min", 0)}) {
+    const Finished done = tinsmith({"simplify", path("points.csv"), "--z-field", "depth", "-t", "0", "-q", "-o",
+                                    path("out.ply"), "--duplicates", duplicates});
+    EXPECT_EQ(done.status, status) << done.err;
+  }
 }
 
 TEST_F(FilesTest, InfoSaysWhatARasterIs) {

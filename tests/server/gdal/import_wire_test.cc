@@ -20,6 +20,7 @@ Import sample() {
   import.frame.y = {5000000, 10, 1000};
   import.frame.vertical_unit = "metre";
   import.driver = "GTiff";
+  import.bands = 2;
   for (int i = 0; i < 6; ++i) import.placements.push_back({{1000 * (i % 3), -1000 * (i / 3)}, 0.5 * i});
   import.grid = std::make_shared<SourceGrid>(
       SourceGrid{3, 2, 0, 0, 1000, -1000, {5e5, 10, 0, 5e6, 0, -10}, -9999.0, "Int16", {
@@ -66,6 +67,7 @@ TEST(ImportWireTest, AnImportArrivesAsItWas) {
   EXPECT_EQ(there->frame, import.frame);
   EXPECT_EQ(there->placements, import.placements);
   EXPECT_EQ(there->driver, import.driver);
+  EXPECT_EQ(there->bands, import.bands);
   EXPECT_EQ(*there->grid, *import.grid);
   EXPECT_EQ(there->heights.stored, import.heights.stored);
   EXPECT_EQ(there->heights.shift, 1);
