@@ -87,7 +87,7 @@ Result<Simplified> simplify(Catalogue& catalogue, const SimplifyRequest& request
   auto options = request.options;
   options.threads = engine_threads();
   const TimeBudget budget(request.max_seconds, start);
-  options.out_of_time = budget.question();
+  options.out_of_time = budget.question(&progress);
   options.protect = protected_positions(*seen.terrain, request.protect);
   const auto rim = seen.terrain->amendments().rim(*seen.terrain);
   options.protect.insert(options.protect.end(), rim.begin(), rim.end());

@@ -157,6 +157,7 @@ int simplify(const SimplifyArguments& arguments) {
   auto results = api::processes::results_of(*result.report, result.terrain);
   results.against_source = true;
   results.out_of_time = result.out_of_time;
+  results.duplicates = result.duplicates;
   results.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
     print_json(arguments, results, result.terrain.frame());
