@@ -44,7 +44,7 @@ Mend mending(std::shared_ptr<const SourceSamples> source, const tin::simplify::O
     auto present = options;
     present.protect = now.amendments().rim(now);
     auto outcome =
-        tin::simplify::mend(now, samples.get(), now.amendments().own(), landed, present, &progress);
+        tin::simplify::mend(now, samples.get(), now.amendments().own_in_force(now), landed, present, &progress);
     if (!outcome) return outcome.error();
     result.report = outcome->report;
     return Thinning{std::move(outcome->removed), std::move(outcome->inserted), std::move(outcome->reset)};
@@ -93,8 +93,8 @@ Result<Simplified> simplify(Catalogue& catalogue, const SimplifyRequest& request
   options.protect.insert(options.protect.end(), rim.begin(), rim.end());
   options.memory = memory.get();
   options.room = [&lease](std::size_t bytes) { return lease->grow_to(bytes); };
-  auto outcome = tin::simplify::simplify(*seen.terrain, samples.get(), seen.terrain->amendments().own(),
-                                         options, &progress);
+  const auto own = seen.terrain->amendments().own_in_force(*seen.terrain);
+  auto outcome = tin::simplify::simplify(*seen.terrain, samples.get(), own, options, &progress);
   if (!outcome) return lease->refusal() ? *lease->refusal() : outcome.error();
   progress.begin_phase(0.95, 1);
   result.report = outcome->report;

@@ -125,6 +125,31 @@ TEST_F(SourceTest, WherePeopleEditedTheyHaveTheLastWordAndElsewhereTheOriginal) 
   }
 }
 
+TEST_F(SourceTest, AnEditThatIsUndoneHasNeverBeen) {
+  const Dem dem(sample_file("olinda"));
+  ASSERT_EQ(served_->upload("?id=dem", dem.file).status, 201);
+  served_->simplify({{"tin", "dem"}, {"tolerance", 10}});
+  const double x = dem.x(dem.width / 3), y = dem.y(dem.height / 2);
+  const Json added = served_->edit("dem", Json::array({{{"op", "insert"}, {"x", x}, {"y", y}, {"z", 300}}}));
+  const Json raised = served_->edit(
+      "dem", Json::array({{{"op", "set-z"}, {"id", added.at("results").at(0).at("id")}, {"z", 400}}}));
+  const auto revert = [&](const Json& revision) {
+    const auto answer = served_->http().post_json("/tins/dem/revisions/" + revision.dump() + "/revert", "");
+    ASSERT_EQ(answer.status, 200) << answer.body;
+  };
+  revert(raised.at("revision"));
+  EXPECT_GT(served_->simplify({{"tin", "dem"}, {"tolerance", 9}, {"as", "one"}}).at("samplesOutOfForce"), 0)
+      << "the vertex still stands";
+  revert(added.at("revision"));
+  served_->kill();
+  start();
+  for (const int tolerance : {10, 3}) {
+    const Json result = served_->simplify({{"tin", "dem"}, {"tolerance", tolerance}});
+    expect_kept(dem, "dem", result, tolerance);
+    EXPECT_EQ(result.at("samplesOutOfForce"), 0);
+  }
+}
+
 TEST_F(SourceTest, PointsAreASourceToo) {
   Dem dem(sample_file("olinda"));
   std::ostringstream text;

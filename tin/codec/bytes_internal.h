@@ -24,6 +24,7 @@ class Writer {
 
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   void u8(std::uint8_t value) { bytes_.push_back(static_cast<char>(value)); }
+  void u64(std::uint64_t value) { fixed(value, 8); }
   void f64(double value);
   void varint(std::uint64_t value);
   void zigzag(std::int64_t value);
@@ -61,6 +62,7 @@ class Reader {
   const base::Error& error() const { return failure_; }
 
   std::uint8_t u8();
+  std::uint64_t u64() { return fixed(8); }
   double f64();
   std::uint64_t varint();
   std::int64_t zigzag();

@@ -9,8 +9,9 @@ namespace tin::codec {
 namespace {
 
 constexpr std::string_view kMagic = "TNSJ";
-constexpr std::uint16_t kVersion = 2;
-constexpr std::uint16_t kEditVersion = 1;  // edits, which are nearly all, need no cause
+constexpr std::uint16_t kVersion = 3;
+constexpr std::uint16_t kEditVersion = 1;       // edits, which are nearly all, need no cause
+constexpr std::uint16_t kWithoutUndoVersion = 2;  // the causes that there were before an edit's undoing was one
 constexpr std::uint8_t kBefore = 1;
 constexpr std::uint8_t kAfter = 2;
 constexpr std::size_t kSmallestStep = 1 + 1 + (1 + 1 + 8);  // parts, id, one placement
@@ -39,21 +40,34 @@ terrain::Step read_step(Reader& in, std::uint64_t previous_id) {
   return step;
 }
 
+/// The oldest that says it.
+std::uint16_t version_for(terrain::Cause cause) {
+  switch (cause) {
+    case terrain::Cause::kEdit:
+      return kEditVersion;
+    case terrain::Cause::kRevert:
+    case terrain::Cause::kSimplification:
+      return kWithoutUndoVersion;
+    case terrain::Cause::kUndo:
+      break;
+  }
+  return kVersion;
+}
+
 terrain::Cause read_cause(Reader& in) {
   const std::uint8_t cause = in.u8();
-  const bool known = cause == static_cast<std::uint8_t>(terrain::Cause::kRevert) ||
-                     cause == static_cast<std::uint8_t>(terrain::Cause::kSimplification);
+  const bool known = cause <= static_cast<std::uint8_t>(terrain::Cause::kUndo) &&
+                     version_for(static_cast<terrain::Cause>(cause)) == in.version();
   in.require(known, "an unknown cause of a change");
-  return static_cast<terrain::Cause>(cause);
+  return known ? static_cast<terrain::Cause>(cause) : terrain::Cause::kEdit;
 }
 
 }  // namespace
 
 std::string encode_change(const terrain::Change& change) {
-  const bool is_edit = change.cause == terrain::Cause::kEdit;
-  Writer out(kMagic, is_edit ? kEditVersion : kVersion);
+  Writer out(kMagic, version_for(change.cause));
   out.reserve(32 + 2 * kSmallestStep * change.steps.size());
-  if (!is_edit) out.u8(static_cast<std::uint8_t>(change.cause));
+  if (change.cause != terrain::Cause::kEdit) out.u8(static_cast<std::uint8_t>(change.cause));
   out.varint(change.steps.size());
   std::uint64_t previous_id = 0;
   for (const terrain::Step& step : change.steps) {

@@ -12,14 +12,19 @@ namespace tin::codec {
 namespace {
 
 using terrain::Amendments;
+using terrain::EditedTriangle;
+using terrain::OwnSample;
 using terrain::SourceGrid;
 using terrain::SourceKind;
 
 constexpr std::string_view kMagic = "TNSC";
-constexpr std::uint16_t kVersion = 2;
-constexpr std::uint16_t kPlainVersion = 1;  // without amendments
+constexpr std::uint16_t kVersion = 3;
+constexpr std::uint16_t kPlainVersion = 1;   // without amendments
+constexpr std::uint16_t kUntoldVersion = 2;  // amendments that do not tell which edit made them
 constexpr std::size_t kSmallestPosition = 2;
 constexpr std::size_t kSmallestTriangle = 3 * kSmallestPosition + 1;
+constexpr std::size_t kSmallestTouch = kSmallestPosition + 1;
+constexpr std::size_t kSmallestDeed = 1 + 8 + 1;
 constexpr std::size_t kSmallestOwn = kSmallestPosition + 8;
 constexpr std::size_t kSmallestVertex = 1 + (1 + 1 + 8);  // id, placement
 constexpr std::uint8_t kDuplicatePolicies = 6;
@@ -210,61 +215,116 @@ SourceGrid read_grid(Reader& in) {
 }
 
 void write_amendments(Writer& out, const Amendments& amendments) {
-  out.u8(static_cast<std::uint8_t>(amendments.kind()));
-  out.u8(amendments.thinned() ? 1 : 0);
-  const auto touched = amendments.touched();
-  out.varint(touched.size());
-  for (const exact::Point p : touched) out.at(p);
-  out.varint(amendments.areas().size());
-  for (const terrain::EditedTriangle& t : amendments.areas()) {
+  const Amendments::Parts parts = amendments.parts();
+  out.u8(static_cast<std::uint8_t>(parts.kind));
+  out.u8(parts.thinned ? 1 : 0);
+  out.varint(parts.next_deed);
+  out.varint(parts.deeds.size());
+  for (const terrain::Deed& deed : parts.deeds) {
+    out.varint(deed.number);
+    out.u64(deed.fingerprint);
+    out.varint(deed.triangles);
+  }
+  out.varint(parts.touches.size());
+  for (const terrain::Touch& touch : parts.touches) {
+    out.at(touch.at);
+    out.varint(touch.deed);
+  }
+  out.varint(parts.areas.size());
+  for (const EditedTriangle& t : parts.areas) {
     for (const exact::Point p : t.corners) out.at(p);
     out.u8(t.inner);
   }
-  out.varint(amendments.own().size());
-  for (const terrain::Placement& sample : amendments.own()) out.placement(sample);
-}
-
-std::vector<exact::Point> read_touched(Reader& in) {
-  std::vector<exact::Point> touched(in.count(kSmallestPosition));
-  for (std::size_t i = 0; i < touched.size() && in.ok(); ++i) {
-    touched[i] = in.at();
-    in.require(i == 0 || touched[i - 1] < touched[i], "touched positions do not ascend");
+  out.varint(parts.own.size());
+  for (const OwnSample& one : parts.own) {
+    out.placement(one.sample);
+    out.varint(one.maker);
   }
-  return touched;
 }
 
-std::vector<terrain::EditedTriangle> read_areas(Reader& in) {
-  std::vector<terrain::EditedTriangle> areas(in.count(kSmallestTriangle));
-  for (terrain::EditedTriangle& t : areas) {
+std::vector<terrain::Deed> read_deeds(Reader& in, std::uint64_t next_deed) {
+  std::vector<terrain::Deed> deeds(in.count(kSmallestDeed));
+  std::uint64_t before = 0;
+  for (terrain::Deed& deed : deeds) {
+    if (!in.ok()) break;
+    deed.number = in.varint();
+    in.require(deed.number > before && deed.number < next_deed, "the numbers of edits make no sense");
+    before = deed.number;
+    deed.fingerprint = in.u64();
+    deed.triangles = in.varint();
+  }
+  return deeds;
+}
+
+/// That of an edit which stands, or of none.
+terrain::DeedNumber read_deed_number(Reader& in, const Amendments::Parts& parts) {
+  if (in.version() == kUntoldVersion) return 0;
+  const terrain::DeedNumber number = in.varint();
+  const auto& deeds = parts.deeds;
+  const auto deed = std::lower_bound(deeds.begin(), deeds.end(), number,
+                                     [](const terrain::Deed& one, terrain::DeedNumber other) { return one.number < other; });
+  in.require(number == 0 || (deed != deeds.end() && deed->number == number), "there is no edit of a number");
+  return number;
+}
+
+void read_touches(Reader& in, Amendments::Parts& parts) {
+  auto& touches = parts.touches;
+  touches.resize(in.count(kSmallestPosition));
+  for (std::size_t i = 0; i < touches.size() && in.ok(); ++i) {
+    touches[i] = {in.at(), read_deed_number(in, parts)};
+    if (i == 0) continue;
+    const auto &a = touches[i - 1], &b = touches[i];
+    in.require(a.at < b.at || (a.at == b.at && a.deed < b.deed), "touched positions do not ascend");
+  }
+}
+
+void read_areas(Reader& in, Amendments::Parts& parts) {
+  parts.areas.resize(in.count(kSmallestTriangle));
+  for (EditedTriangle& t : parts.areas) {
     if (!in.ok()) break;
     for (exact::Point& p : t.corners) p = in.at();
     t.inner = in.u8();
     in.require(t.inner < 8 && exact::orientation(t.corners[0], t.corners[1], t.corners[2]) > 0,
                "an edited triangle makes no sense");
+    if (in.version() == kUntoldVersion) t = with_least_first(t);
+    in.require(t == with_least_first(t), "an edited triangle does not begin with its least corner");
   }
-  return areas;
+  std::uint64_t left = parts.areas.size();
+  for (const terrain::Deed& deed : parts.deeds) {
+    in.require(deed.triangles <= left, "there are fewer edited triangles than edits have");
+    left -= std::min(left, deed.triangles);
+  }
 }
 
-std::vector<terrain::Placement> read_own(Reader& in) {
-  std::vector<terrain::Placement> own(in.count(kSmallestOwn));
+void read_own(Reader& in, Amendments::Parts& parts) {
+  auto& own = parts.own;
+  own.resize(in.count(kSmallestOwn));
   for (std::size_t i = 0; i < own.size() && in.ok(); ++i) {
-    own[i] = in.placement();
-    in.require(i == 0 || own[i - 1].at < own[i].at, "people's samples do not ascend");
+    own[i].sample = in.placement();
+    own[i].maker = read_deed_number(in, parts);
+    if (i == 0) continue;
+    const auto &a = own[i - 1], &b = own[i];
+    in.require(a.sample.at < b.sample.at || (a.sample.at == b.sample.at && a.maker < b.maker),
+               "people's samples do not ascend");
   }
-  return own;
 }
 
 Amendments read_amendments(Reader& in, const Checkpoint& checkpoint) {
+  Amendments::Parts parts;
   const std::uint8_t kind = in.u8();
   in.require(kind <= static_cast<std::uint8_t>(SourceKind::kPoints), "an unknown kind of source");
-  const bool raster = kind == static_cast<std::uint8_t>(SourceKind::kRaster);
-  in.require(!raster || checkpoint.grid, "the source is a raster without a grid");
-  const bool thinned = read_flag(in);
-  auto touched = read_touched(in);
-  auto areas = read_areas(in);
-  auto own = read_own(in);
-  Amendments amendments(static_cast<SourceKind>(kind), thinned, std::move(touched), std::move(areas),
-                        std::move(own));
+  parts.kind = static_cast<SourceKind>(kind);
+  in.require(parts.kind != SourceKind::kRaster || checkpoint.grid, "the source is a raster without a grid");
+  parts.thinned = read_flag(in);
+  if (in.version() != kUntoldVersion) {
+    parts.next_deed = in.varint();
+    in.require(parts.next_deed >= 1, "the next edit has no number");
+    parts.deeds = read_deeds(in, parts.next_deed);
+  }
+  read_touches(in, parts);
+  read_areas(in, parts);
+  read_own(in, parts);
+  Amendments amendments(std::move(parts));
   in.require(!(amendments == Amendments()), "amendments that are none");
   return amendments;
 }

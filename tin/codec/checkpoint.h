@@ -44,7 +44,7 @@ std::string encode_checkpoint(const Checkpoint& checkpoint);
 /// The checkpoint of `bytes`, which may be anything. Whether the digest is that of the vertices, and whether
 /// two vertices share a position, is for the caller to see when it builds the terrain.
 ///
-/// Ensures: what encode_checkpoint requires; encode_checkpoint(result) == bytes.
+/// Ensures: what encode_checkpoint requires; encode_checkpoint(result) == bytes, but for version 2, which is written as 3.
 /// Errors:  kMalformed; kUnsupported when written by a newer version.
 /// Cost:    linear; allocates at most a small multiple of bytes.size(), and 128 MiB for the grid's mask.
 base::Result<Checkpoint> decode_checkpoint(std::string_view bytes);

@@ -69,4 +69,17 @@ std::string VertexSetHash::digest(const frame::Frame& frame) const {
   return out;
 }
 
+std::uint64_t fingerprint(const Change& change) {
+  std::uint64_t hash = change.steps.size();
+  const auto take = [&](const std::optional<Placement>& placement) {
+    hash = placement ? combine(hash, hash_vertex(placement->at, placement->z).low) : combine(hash, 0);
+  };
+  for (const Step& step : change.steps) {
+    hash = combine(hash, step.id.value());
+    take(step.before);
+    take(step.after);
+  }
+  return hash == 0 ? 1 : hash;
+}
+
 }  // namespace tin::terrain

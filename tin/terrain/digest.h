@@ -1,4 +1,4 @@
-// The digest: a hash of a terrain's content that does not depend on its history.
+// The digest: a hash of a terrain's content that does not depend on its history; and one of a change.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 
 #include "tin/exact/point.h"
 #include "tin/frame/frame.h"
+#include "tin/terrain/edit.h"
 
 namespace tin::terrain {
 
@@ -25,5 +26,8 @@ class VertexSetHash {
   std::uint64_t high_ = 0;
   std::uint64_t count_ = 0;
 };
+
+/// By which a change is known again: a hash of its steps, in order. Never 0. Cost: O(steps).
+std::uint64_t fingerprint(const Change& change);
 
 }  // namespace tin::terrain

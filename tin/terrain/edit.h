@@ -57,8 +57,9 @@ struct Step {
 /// Who made a change: it decides what the change does to the terrain's samples (amendments.h).
 enum class Cause : std::uint8_t {
   kEdit,            // people: what they leave is the truth
-  kRevert,          // an earlier state comes back
+  kRevert,          // a simplification is undone: an earlier state comes back
   kSimplification,  // vertices go or come as samples allow
+  kUndo,            // an edit is undone: what it made the truth is so no longer
 };
 
 /// What an accepted edit really did, in order: the journal's record and the source of undo.
@@ -67,7 +68,8 @@ struct Change {
   Cause cause = Cause::kEdit;
   friend bool operator==(const Change&, const Change&) = default;
 
-  /// The change that undoes this one: steps reversed, before and after exchanged. Its cause is kRevert.
+  /// The change that undoes this one: steps reversed, before and after exchanged. Who undoes the undoing of an
+  /// edit edits again, and so with simplifications.
   Change inverse() const;
 };
 

@@ -1,10 +1,11 @@
 // Which triangles an edit made. The mesh is a function of its vertices, so the edit's history does not
 // matter: a triangle is new if a corner is, or if a vertex that is gone lay in its circle.
+#include "tin/terrain/edited_area.h"
+
 #include <algorithm>
 #include <unordered_set>
 
 #include "tin/exact/predicates.h"
-#include "tin/terrain/amendments.h"
 #include "tin/terrain/terrain.h"
 
 namespace tin::terrain {
@@ -54,6 +55,8 @@ class AreaFinder {
     for (const TriangleSlot t : found_) {
       if (!mesh_.is_infinite(t)) area.push_back(describe(t));
     }
+    std::sort(area.begin(), area.end(),
+              [](const EditedTriangle& a, const EditedTriangle& b) { return a.corners < b.corners; });
     return area;
   }
 
@@ -94,7 +97,7 @@ class AreaFinder {
       if (std::binary_search(found_.begin(), found_.end(), mesh_.twin(t, i).triangle()))
         out.inner |= static_cast<std::uint8_t>(1U << i);
     }
-    return out;
+    return with_least_first(out);
   }
 
   const Terrain& terrain_;
@@ -107,16 +110,54 @@ class AreaFinder {
 
 }  // namespace
 
+EditedTriangle with_least_first(const EditedTriangle& t) {
+  const auto first = static_cast<std::size_t>(std::min_element(t.corners.begin(), t.corners.end()) - t.corners.begin());
+  EditedTriangle out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t from = (first + i) % 3;
+    out.corners[i] = t.corners[from];
+    if ((t.inner >> from & 1U) != 0) out.inner |= static_cast<std::uint8_t>(1U << i);
+  }
+  return out;
+}
+
+std::vector<Step> net_steps(const Change& change) {
+  std::vector<Step> steps = change.steps;
+  std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.id < b.id; });
+  std::vector<Step> out;
+  for (std::size_t i = 0; i < steps.size();) {
+    std::size_t last = i;
+    while (last + 1 < steps.size() && steps[last + 1].id == steps[i].id) ++last;
+    if (steps[i].before != steps[last].after) out.push_back({steps[i].id, steps[i].before, steps[last].after});
+    i = last + 1;
+  }
+  return out;
+}
+
 std::vector<EditedTriangle> edited_area(const Terrain& after, const Change& change) {
   if (after.mesh().dimension() < 2) return {};
   AreaFinder finder(after);
-  for (const Step& step : change.steps) {
+  for (const Step& step : net_steps(change)) {
     const auto slot = after.slot_of(step.id);
     if (step.after && slot) finder.add_star(*slot);
     if (step.before && (!step.after || step.after->at != step.before->at))
       finder.add_conflicts(step.before->at);
   }
   return finder.take();
+}
+
+bool is_inside(const EditedTriangle& t, Point p) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t side = exact::orientation(t.corners[(i + 1) % 3], t.corners[(i + 2) % 3], p);
+    if (side < 0 || (side == 0 && ((t.inner >> i) & 1U) == 0)) return false;
+  }
+  return p != t.corners[0] && p != t.corners[1] && p != t.corners[2];
+}
+
+std::pair<Point, Point> box(const EditedTriangle& t) {
+  const auto& [a, b, c] = t.corners;
+  return {{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
+          {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})}};
 }
 
 }  // namespace tin::terrain

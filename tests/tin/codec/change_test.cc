@@ -114,15 +114,24 @@ TEST(ChangeCodecTest, ArbitraryBytesNeverCrash) {
   }
 }
 
-TEST(ChangeCodecTest, OnlyAnEditGoesWithoutItsCauseAndNoOtherCauseIsKnown) {
+TEST(ChangeCodecTest, EachCauseGoesWithItsVersionAndNoOtherIsKnown) {
   Change change;
   EXPECT_EQ(encode_change(change)[4], 1);
-  change.cause = terrain::Cause::kSimplification;
-  std::string bytes = encode_change(change);
-  EXPECT_EQ(bytes[4], 2);
-  for (const char cause : {0, 3}) {
-    bytes[6] = cause;
-    EXPECT_FALSE(decode_change(testing::resummed(bytes)).ok()) << int{cause};
+  struct Case {
+    terrain::Cause cause;
+    char version;
+    std::vector<char> others;
+  };
+  for (const Case& one : {Case{terrain::Cause::kRevert, 2, {0, 3, 4}}, Case{terrain::Cause::kSimplification, 2, {0, 3, 4}},
+                          Case{terrain::Cause::kUndo, 3, {0, 1, 2, 4}}}) {
+    change.cause = one.cause;
+    std::string bytes = encode_change(change);
+    EXPECT_EQ(bytes[4], one.version);
+    EXPECT_EQ(decode_change(bytes)->cause, one.cause);
+    for (const char cause : one.others) {
+      bytes[6] = cause;
+      EXPECT_FALSE(decode_change(testing::resummed(bytes)).ok()) << int{cause};
+    }
   }
 }
 
@@ -135,7 +144,7 @@ TEST(ChangeCodecTest, HugeCountsAllocateNothing) {
 
 TEST(ChangeCodecTest, NewerVersionsAreRefused) {
   std::string bytes = encode_change(Change{});
-  bytes[4] = 3;
+  bytes[4] = 4;
   const auto decoded = decode_change(bytes);
   ASSERT_FALSE(decoded.ok());
   EXPECT_EQ(decoded.error().code, base::Code::kUnsupported);

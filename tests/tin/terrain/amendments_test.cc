@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -73,50 +74,96 @@ bool holds(const Border& b, Point p) {
   return orientation(b[0].first, b[1].first, p) == 0 && b[0].first < p && p < b[1].first;
 }
 
-/// Follows edits by the words of the rule.
+/// What an edit did to the samples that there were.
+struct Followed {
+  std::vector<Step> steps;
+  std::set<Point> touched;
+  std::map<Point, double> made;  // samples
+  std::set<Point> inside;        // of its area
+};
+
+/// Follows edits by the words of the rule. `nobodys` are samples that are older than all edits.
 class Oracle {
  public:
-  explicit Oracle(const SourceSamples& source) {
-    for (std::size_t i = 0; i < source.size(); ++i) {
-      if (source.is_sample(i)) in_force_.insert(source.at(i));
-    }
-  }
+  explicit Oracle(std::map<Point, double> nobodys) : nobodys_(std::move(nobodys)) {}
 
-  void follow(const Surface& before, const Surface& after, const Change& change) {
-    std::set<Point> corners, touched;
+  void edit(const Surface& before, const Surface& after, const Change& change) {
+    std::map<VertexId, Step> net;
+    for (const Step& step : change.steps) net.try_emplace(step.id, step).first->second.after = step.after;
+    Followed edit{change.steps, {}, {}, {}};
+    for (const auto& [id, step] : net) {
+      if (step.before == step.after) continue;
+      if (step.before) edit.touched.insert(step.before->at);
+      if (step.after) edit.touched.insert(step.after->at);
+    }
+    if (edit.touched.empty()) return;
+    for (const auto& [id, step] : net) {
+      if (step.before != step.after && step.after) edit.made[step.after->at] = step.after->z;
+    }
+    std::set<Point> corners;
     for (const Facet& f : after.facets) {
       for (const Corner& c : f) corners.insert(c.first);
     }
-    for (const Step& step : change.steps) {
-      if (step.before) touched.insert(step.before->at);
-      if (step.after) touched.insert(step.after->at);
+    for (const auto& [p, z] : nobodys_) {
+      if (lies_inside(p, corners, before, after)) edit.inside.insert(p);
     }
-    std::erase_if(in_force_, [&](Point p) {
-      if (touched.contains(p)) return true;
-      bool covered = false;
-      for (const Facet& f : after.facets) {
-        if (!holds(f, p)) continue;
-        if (corners.contains(p) || before.facets.contains(f)) return false;
-        covered = true;
+    for (const Followed& earlier : standing_) {
+      for (const auto& [p, z] : earlier.made) {
+        if (lies_inside(p, corners, before, after)) edit.inside.insert(p);
       }
-      return covered && std::none_of(after.borders.begin(), after.borders.end(), [&](const Border& b) {
-               return holds(b, p) && before.borders.contains(b);
-             });
-    });
+    }
+    standing_.push_back(std::move(edit));
   }
 
-  std::set<Point> in_force(const Surface& now, bool edited) const {
+  /// Undone, if it stands; else what undoes it is an edit.
+  void undo(const Surface& before, const Surface& after, const Change& change) {
+    const auto steps = change.inverse().steps;
+    const auto found = std::find_if(standing_.rbegin(), standing_.rend(),
+                                    [&](const Followed& edit) { return edit.steps == steps; });
+    if (found == standing_.rend()) return edit(before, after, change);
+    standing_.erase(std::next(found).base());
+  }
+
+  std::set<Point> nobodys_in_force(const Surface& now) const {
     std::set<Point> out;
-    for (const Point p : in_force_) {
-      const bool covered =
-          std::any_of(now.facets.begin(), now.facets.end(), [p](const Facet& f) { return holds(f, p); });
-      if (covered || !edited) out.insert(p);
+    for (const auto& [p, z] : nobodys_) {
+      if (is_in_force(p, 0, now)) out.insert(p);
+    }
+    return out;
+  }
+
+  std::map<Point, double> peoples_in_force(const Surface& now) const {
+    std::map<Point, double> out;
+    for (std::size_t i = 0; i < standing_.size(); ++i) {
+      for (const auto& [p, z] : standing_[i].made) {
+        if (is_in_force(p, i + 1, now)) out[p] = z;
+      }
     }
     return out;
   }
 
  private:
-  std::set<Point> in_force_;
+  bool is_in_force(Point p, std::size_t next, const Surface& now) const {
+    for (; next < standing_.size(); ++next) {
+      if (standing_[next].touched.contains(p) || standing_[next].inside.contains(p)) return false;
+    }
+    return std::any_of(now.facets.begin(), now.facets.end(), [p](const Facet& f) { return holds(f, p); });
+  }
+
+  static bool lies_inside(Point p, const std::set<Point>& corners, const Surface& before, const Surface& after) {
+    bool covered = false;
+    for (const Facet& f : after.facets) {
+      if (!holds(f, p)) continue;
+      if (corners.contains(p) || before.facets.contains(f)) return false;
+      covered = true;
+    }
+    return covered && std::none_of(after.borders.begin(), after.borders.end(), [&](const Border& b) {
+             return holds(b, p) && before.borders.contains(b);
+           });
+  }
+
+  std::map<Point, double> nobodys_;
+  std::vector<Followed> standing_;
 };
 
 std::set<Point> positions(const SourceSamples& source) {
@@ -141,12 +188,20 @@ std::vector<Edit> any_edits(Random& random, const Terrain& terrain, std::size_t 
   const auto vertices = terrain.vertices_by_id();
   std::set<std::uint64_t> used;
   std::vector<Edit> edits;
+  std::uint64_t next = terrain.next_id().value();
   while (edits.size() < count) {
     const auto& vertex = vertices[random() % vertices.size()];
     const double z = static_cast<double>(random() % 1000000) + 0.5;  // never what it was
     const auto kind = random() % 4;
     if (kind > 0 && !used.insert(vertex.id.value()).second) continue;
-    if (kind == 0) edits.emplace_back(Insert{any_position(random), z});
+    if (kind == 0) {
+      edits.emplace_back(Insert{any_position(random), z});
+      const VertexId inserted(next++);
+      const auto then = random() % 8;
+      if (then == 0) edits.emplace_back(Remove{inserted});
+      if (then == 1) edits.emplace_back(Move{inserted, any_position(random)});
+      if (then == 2) edits.emplace_back(SetZ{inserted, z + 1});
+    }
     if (kind == 1) edits.emplace_back(SetZ{vertex.id, z});
     if (kind == 2) edits.emplace_back(Remove{vertex.id});
     if (kind == 3) edits.emplace_back(Move{vertex.id, any_position(random)});
@@ -183,28 +238,188 @@ Case thinned(Random& random, bool raster) {
   return out;
 }
 
-TEST(AmendmentsTest, EditsPutOutOfForceWhatTheirAreaHoldsAndNothingElse) {
-  for (std::uint32_t seed = 1; seed <= 120; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    auto [source, terrain] = thinned(random, seed % 2 == 0);
-    Oracle oracle(source);
-    bool edited = false;
-    for (int round = 0; round < 6; ++round) {
-      const Surface before(terrain);
-      const auto applied = terrain.apply(any_edits(random, terrain, 1 + random() % 5), Duplicates::kReplace);
-      if (!applied) continue;  // a move onto another vertex
-      terrain.amend(applied->change);
-      edited = true;
-      const Surface after(terrain);
-      oracle.follow(before, after, applied->change);
-      const auto found = positions(terrain.amendments().in_force(source, terrain));
-      const auto expected = oracle.in_force(after, edited);
-      for (const Point p : found) ASSERT_TRUE(expected.contains(p)) << p.x << ", " << p.y << " is in force still";
-      for (const Point p : expected) ASSERT_TRUE(found.contains(p)) << p.x << ", " << p.y << " is not in force";
-    }
-    ASSERT_EQ(tin::mesh::validate(terrain.mesh()).value_or(""), "");
+/// Takes some vertices away, none of them from the outline, and gives others another height.
+Change any_simplification(Random& random, const Terrain& terrain) {
+  std::vector<tin::mesh::HalfEdge> link;
+  terrain.mesh().link(tin::mesh::kInfinite, link);
+  std::set<Point> outline;
+  for (const auto e : link) outline.insert(terrain.mesh().point(terrain.mesh().origin(e)));
+  Change out{{}, Cause::kSimplification};
+  for (const Vertex& vertex : terrain.vertices_by_id()) {
+    if (outline.contains(vertex.at)) continue;
+    const Placement before{vertex.at, vertex.z};
+    const auto kind = random() % 8;
+    if (kind == 0) out.steps.push_back({vertex.id, before, std::nullopt});
+    if (kind == 1) out.steps.push_back({vertex.id, before, Placement{vertex.at, vertex.z + 0.25}});
   }
+  return out;
+}
+
+/// A terrain without a source, some of whose vertices a simplification took away.
+Terrain simplified_without_source(Random& random) {
+  std::vector<Placement> all;
+  for (int i = 0; i < kSize * kSize; ++i)
+    all.push_back({grid()->centre(i % kSize, i / kSize), static_cast<double>(random() % 50)});
+  Terrain terrain = *Terrain::build({}, all, Duplicates::kReject);
+  const Change simplification = any_simplification(random, terrain);
+  EXPECT_TRUE(terrain.replay(simplification).ok());
+  terrain.amend(simplification);
+  return terrain;
+}
+
+/// A thinned terrain, all that happens to it, and what the oracle makes of that.
+class Story {
+ public:
+  explicit Story(std::uint32_t seed) : random_(seed) {
+    if (seed % 3 == 0) {
+      terrain_.emplace(simplified_without_source(random_));
+    } else {
+      Case one = thinned(random_, seed % 3 == 1);
+      terrain_.emplace(std::move(one.terrain));
+      source_.emplace(std::move(one.source));
+    }
+    start_.emplace(*terrain_);
+    std::map<Point, double> nobodys;
+    if (source_) {
+      for (std::size_t i = 0; i < source_->size(); ++i) nobodys.emplace(source_->at(i), source_->z(i));
+    } else {
+      for (const Vertex& vertex : terrain_->vertices_by_id()) nobodys.emplace(vertex.at, vertex.z);
+      for (const Placement& sample : terrain_->amendments().own_in_force(*terrain_)) nobodys[sample.at] = sample.z;
+    }
+    oracle_.emplace(std::move(nobodys));
+  }
+
+  void go_on() {
+    switch (log_.empty() ? 0 : random_() % 8) {
+      case 0:
+      case 1:
+      case 2:
+        return edit();
+      case 3:
+        return perform(any_simplification(random_, *terrain_));
+      default:
+        return perform(log_[random_() % log_.size()].inverse());
+    }
+  }
+
+  void expect_right() const {
+    const Amendments& amendments = terrain_->amendments();
+    const Surface now(*terrain_);
+    std::set<Point> nobodys = oracle_->nobodys_in_force(now);
+    std::map<Point, double> peoples = oracle_->peoples_in_force(now), own, standing;
+    for (const Vertex& vertex : terrain_->vertices_by_id()) standing.emplace(vertex.at, vertex.z);
+    for (const Placement& sample : amendments.own_in_force(*terrain_)) {
+      ASSERT_TRUE(own.empty() || own.rbegin()->first < sample.at);
+      own.emplace(sample.at, sample.z);
+    }
+    if (source_) {
+      const auto found = positions(amendments.in_force(*source_, *terrain_));
+      for (const Point p : found) ASSERT_TRUE(nobodys.contains(p)) << p.x << ", " << p.y << " is in force still";
+      for (const Point p : nobodys) ASSERT_TRUE(found.contains(p)) << p.x << ", " << p.y << " is not in force";
+      for (const auto& [p, z] : own) ASSERT_FALSE(found.contains(p)) << p.x << ", " << p.y << " is a sample twice";
+    } else {
+      for (const Point p : nobodys) ASSERT_TRUE(own.contains(p) || standing.contains(p)) << p.x << ", " << p.y;
+    }
+    for (const auto& [p, z] : own) {
+      const auto expected = peoples.find(p);
+      ASSERT_TRUE(expected != peoples.end() ? expected->second == z : !source_ && nobodys.contains(p))
+          << p.x << ", " << p.y << " is " << z;
+    }
+    for (const auto& [p, z] : peoples) {
+      const auto found = own.contains(p) ? own.find(p) : standing.find(p);
+      ASSERT_TRUE(found != own.end() && found != standing.end() && found->second == z) << p.x << ", " << p.y << " is not " << z;
+    }
+  }
+
+  /// Who replays all of it comes to the same, and so does who took it up in between.
+  void expect_replayed() {
+    Terrain again = *start_;
+    for (const Change& change : log_) {
+      ASSERT_TRUE(again.replay(change).ok());
+      again.amend(change);
+      if (random_() % 4 == 0) again.set_amendments(Amendments(again.amendments().parts()));
+    }
+    EXPECT_EQ(again.amendments(), terrain_->amendments());
+    ASSERT_EQ(tin::mesh::validate(terrain_->mesh()).value_or(""), "");
+  }
+
+  int undone() const { return undone_; }
+
+ private:
+  void edit() {
+    Terrain tried = *terrain_;
+    const auto applied = tried.apply(any_edits(random_, tried, 1 + random_() % 5), Duplicates::kReplace);
+    if (applied) perform(applied->change);  // else a move onto another vertex
+  }
+
+  void perform(const Change& change) {
+    const Surface before(*terrain_);
+    if (!terrain_->replay(change).ok()) return;  // another change came in between
+    terrain_->amend(change);
+    log_.push_back(change);
+    const Surface after(*terrain_);
+    if (change.cause == Cause::kEdit) oracle_->edit(before, after, change);
+    if (change.cause == Cause::kUndo) oracle_->undo(before, after, change);
+    undone_ += change.cause == Cause::kUndo ? 1 : 0;
+  }
+
+  Random random_;
+  std::optional<Terrain> terrain_, start_;
+  std::optional<SourceSamples> source_;
+  std::optional<Oracle> oracle_;
+  std::vector<Change> log_;
+  int undone_ = 0;
+};
+
+/// Edits, simplifications, and the undoing of any of them, and of any undoing, once or again.
+TEST(AmendmentsTest, WhatIsInForceFollowsFromTheEditsThatStand) {
+  int undone = 0;
+  for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Story story(seed);
+    for (int round = 0; round < 16; ++round) {
+      story.go_on();
+      ASSERT_NO_FATAL_FAILURE(story.expect_right());
+    }
+    ASSERT_NO_FATAL_FAILURE(story.expect_replayed());
+    undone += story.undone();
+  }
+  EXPECT_GT(undone, 200);
+}
+
+TEST(AmendmentsTest, APersonsSampleComesBackOnlyWhenNoEditThatStandsHoldsIt) {
+  Terrain terrain = *Terrain::build(
+      {}, std::vector<Placement>{{{0, 0}, 1}, {{90, 0}, 1}, {{0, 90}, 1}, {{20, 20}, 1}}, Duplicates::kReject);
+  const Change simplification{{{VertexId(4), Placement{{20, 20}, 1}, std::nullopt}}, Cause::kSimplification};
+  ASSERT_TRUE(terrain.replay(simplification).ok());
+  terrain.amend(simplification);
+  std::vector<Change> edits;
+  for (const VertexId corner : {VertexId(1), VertexId(2)}) {
+    edits.push_back(terrain.apply(std::vector<Edit>{SetZ{corner, 7}}, Duplicates::kReject)->change);
+    terrain.amend(edits.back());
+    EXPECT_TRUE(terrain.amendments().own_in_force(terrain).empty());
+  }
+  ASSERT_TRUE(terrain.replay(edits[0].inverse()).ok());
+  terrain.amend(edits[0].inverse());
+  EXPECT_TRUE(terrain.amendments().own_in_force(terrain).empty()) << "the other edit bends the triangle around it, too";
+  ASSERT_TRUE(terrain.replay(edits[1].inverse()).ok());
+  terrain.amend(edits[1].inverse());
+  ASSERT_EQ(terrain.amendments().own_in_force(terrain).size(), 1U);
+  EXPECT_EQ(terrain.amendments().own_in_force(terrain)[0], (Placement{{20, 20}, 1}));
+}
+
+TEST(AmendmentsTest, WithoutASourceWhatHoldsUpAnEditedAreaIsKnownToo) {
+  Random random(5);
+  Terrain terrain = simplified_without_source(random);
+  const VertexId some = terrain.vertices_by_id()[40].id;
+  const auto edit = terrain.apply(std::vector<Edit>{SetZ{some, 70}}, Duplicates::kReject)->change;
+  terrain.amend(edit);
+  const auto rim = terrain.amendments().rim(terrain);
+  EXPECT_GE(rim.size(), 3U);
+  EXPECT_FALSE(std::binary_search(rim.begin(), rim.end(), terrain.vertex(some)->at));
+  ASSERT_TRUE(terrain.replay(edit.inverse()).ok());
+  terrain.amend(edit.inverse());
+  EXPECT_TRUE(terrain.amendments().rim(terrain).empty());
 }
 
 TEST(AmendmentsTest, WhatHoldsUpAnEditedAreaIsItsCornersButForWhatWasTouched) {
@@ -262,11 +477,48 @@ TEST(AmendmentsTest, ASimplificationTakesNothingOutOfForceAndPeoplesVerticesStay
   ASSERT_TRUE(terrain.replay(simplification).ok());
   terrain.amend(simplification);
   EXPECT_EQ(positions(terrain.amendments().in_force(source, terrain)), before);
-  ASSERT_EQ(terrain.amendments().own().size(), 1U) << "vertex 9 is the source's, not people's";
-  EXPECT_EQ(terrain.amendments().own()[0], (Placement{{3, 4}, 90}));
+  ASSERT_EQ(terrain.amendments().own_in_force(terrain).size(), 1U) << "vertex 9 is the source's, not people's";
+  EXPECT_EQ(terrain.amendments().own_in_force(terrain)[0], (Placement{{3, 4}, 90}));
   // Who edits there again has the last word.
   terrain.amend(terrain.apply(std::vector<Edit>{Insert{{4, 4}, 10}}, Duplicates::kReject)->change);
-  EXPECT_TRUE(terrain.amendments().own().empty());
+  EXPECT_TRUE(terrain.amendments().own_in_force(terrain).empty());
+}
+
+TEST(AmendmentsTest, ASimplificationThatIsDoneAgainLeavesWhatItTakesASample) {
+  Random random(7);
+  auto [source, terrain] = thinned(random, true);
+  const auto perform = [&terrain = terrain](const Change& change) {
+    ASSERT_TRUE(terrain.replay(change).ok());
+    terrain.amend(change);
+  };
+  const Change edit = terrain.apply(std::vector<Edit>{Insert{{3, 4}, 90}}, Duplicates::kReject)->change;
+  terrain.amend(edit);
+  const Change simplification{{{edit.steps[0].id, edit.steps[0].after, std::nullopt}}, Cause::kSimplification};
+  perform(simplification);
+  perform(simplification.inverse());
+  perform(edit.inverse());
+  EXPECT_TRUE(terrain.amendments().own_in_force(terrain).empty());
+  perform(edit.inverse().inverse());
+  perform(simplification.inverse().inverse());
+  EXPECT_EQ(terrain.amendments().own_in_force(terrain), (std::vector<Placement>{{{3, 4}, 90}}));
+}
+
+TEST(AmendmentsTest, WhoUndoesWhatIsUndoneAlreadyEdits) {
+  Random random(7);
+  auto [source, terrain] = thinned(random, true);
+  const Placement was{terrain.vertex(VertexId(9))->at, terrain.vertex(VertexId(9))->z};
+  const auto change = [&, &terrain = terrain](double from, double to, Cause cause) {
+    const Change out{{{VertexId(9), Placement{was.at, from}, Placement{was.at, to}}}, cause};
+    ASSERT_TRUE(terrain.replay(out).ok());
+    terrain.amend(out);
+  };
+  change(was.z, 20, Cause::kEdit);
+  change(20, was.z, Cause::kEdit);
+  change(was.z, 20, Cause::kUndo);
+  change(20, was.z, Cause::kUndo);
+  EXPECT_TRUE(terrain.amendments().touched().empty());
+  change(was.z, 20, Cause::kUndo);  // once more
+  EXPECT_EQ(terrain.amendments().touched(), std::vector<Point>{was.at});
 }
 
 TEST(AmendmentsTest, WithoutASourceEveryVertexThatASimplificationTakesStaysASample) {
@@ -275,28 +527,32 @@ TEST(AmendmentsTest, WithoutASourceEveryVertexThatASimplificationTakesStaysASamp
   Change simplification{{{VertexId(4), Placement{{2, 2}, 1}, std::nullopt}}, Cause::kSimplification};
   ASSERT_TRUE(terrain.replay(simplification).ok());
   terrain.amend(simplification);
-  ASSERT_EQ(terrain.amendments().own().size(), 1U);
+  ASSERT_EQ(terrain.amendments().own_in_force(terrain).size(), 1U);
   Change revert = simplification.inverse();
   EXPECT_EQ(revert.cause, Cause::kRevert);
   ASSERT_TRUE(terrain.replay(revert).ok());
   terrain.amend(revert);
-  EXPECT_EQ(terrain.amendments().own().size(), 1U) << "the same sample, as a vertex";
+  EXPECT_EQ(terrain.amendments().own_in_force(terrain).size(), 1U) << "the same sample, as a vertex";
   EXPECT_EQ(terrain.vertex_count(), 4U);
 }
 
-TEST(AmendmentsTest, ManyTouchedPositionsAreListedOnceEach) {
+TEST(AmendmentsTest, ManyTouchedPositionsAreListedOnceEachAndOldEditsTakeNoRoom) {
   Amendments amendments(SourceKind::kPoints);
   Terrain terrain{tin::frame::Frame{}};
   std::set<Point> expected;
   Random random(11);
-  for (int i = 0; i < 6000; ++i) {
-    const Point p{static_cast<int>(random() % 60), static_cast<int>(random() % 60)};
+  const auto touch = [&](Point p) {
     amendments.take(terrain, Change{{{VertexId(1), Placement{p, 0}, std::nullopt}}});
     expected.insert(p);
-  }
+  };
+  for (int i = 0; i < 400'000; ++i) touch({static_cast<int>(random() % 60), static_cast<int>(random() % 60)});
   const auto touched = amendments.touched();
   EXPECT_TRUE(std::equal(touched.begin(), touched.end(), expected.begin(), expected.end()));
-  EXPECT_LT(amendments.bytes(), 100'000U);
+  EXPECT_LT(amendments.bytes(), 16'000'000U);
+  touch({100, 100});
+  const Change undo = Change{{{VertexId(1), Placement{{100, 100}, 0}, std::nullopt}}}.inverse();
+  amendments.take(terrain, undo);
+  EXPECT_EQ(amendments.touched().size(), touched.size());
 }
 
 }  // namespace
