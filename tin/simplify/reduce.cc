@@ -147,6 +147,11 @@ class Reduction {
       if (!repair(tin, target, options_.threads, part.part(0.7, 1))) return std::nullopt;
     }
     tin = std::make_unique<Patch>(samples_, std::span<const Pin>(), best, options_.threads);
+    if (best.size() < budget && !out_of_time()) {  // what the last rounds left over
+      const auto filled = spend(*tin, budget, phase.part(1, 1));
+      if (!filled) return std::nullopt;
+      error = std::min(error, *filled);
+    }
     return Reduced{std::move(tin), false, error};
   }
 
@@ -161,13 +166,14 @@ class Reduction {
     }
   }
 
-  /// At first a little more is asked for than the budget gives, since search will find the rest.
+  /// At first a little more is asked for than the budget gives, since search will find the rest, and large steps are taken
+  /// where it left much of the budget over.
   static double next_target(double target, double best, std::size_t vertices, std::size_t budget, int round,
                             int rounds) {
     const double left = static_cast<double>(rounds - round - 1) / rounds;
-    const double wanted = static_cast<double>(budget) * (1 + 0.1 * left);
+    const double wanted = static_cast<double>(budget) * (1 + 0.05 * left);
     const double factor = std::pow(static_cast<double>(vertices) / wanted, 1 / kGrowth);
-    return std::min(target * std::clamp(factor, 0.92, 1.05), best);
+    return std::min(target * std::clamp(factor, 0.95 - 0.2 * left, 1.05), best);
   }
 
   const Samples& samples_;
