@@ -18,10 +18,15 @@ namespace server::cli {
 
 namespace {
 
-/// Of a number without a sign: the parser would take -1 for the largest of all.
+/// Of a number without a sign: the parser would take -1, and what is too large, for the largest of all.
 CLI::Validator not_negative() {
+  constexpr std::size_t kMostDigits = 18;
   return CLI::Validator(
-      [](std::string& text) { return text.starts_with('-') ? "must not be negative" : std::string(); }, "");
+      [](std::string& text) -> std::string {
+        if (text.starts_with('-')) return "must not be negative";
+        return text.size() > kMostDigits ? "is too large" : "";
+      },
+      "");
 }
 
 CLI::App* add_serve(CLI::App& app, ServeArguments& arguments) {
@@ -108,7 +113,7 @@ CLI::App* add_simplify(CLI::App& app, SimplifyArguments& arguments) {
   command->add_option("--duplicates", arguments.duplicates, "Of points at one position: replace (the last stays), keep, mean, max, min or reject")
       ->capture_default_str();
   command->add_flag("--json", arguments.json, "Print the report as JSON");
-  command->add_flag("-q,--quiet", arguments.quiet, "Print neither a report nor a progress bar");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print no progress bar, and no report but that of --json");
   return command;
 }
 
@@ -175,11 +180,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kMisuse;
   }
-  if (simplify_command->parsed()) return simplify(simplifying);
-  if (info_command->parsed()) return info(informing);
-  if (token_command->parsed()) return print_token(token);
+  if (simplify_command->parsed()) return unless_unprinted(simplify(simplifying));
+  if (info_command->parsed()) return unless_unprinted(info(informing));
+  if (token_command->parsed()) return unless_unprinted(print_token(token));
   if (decode_command->parsed()) return gdal::run_decoder();
-  if (check_command->parsed()) return check(keeping.folder);
+  if (check_command->parsed()) return unless_unprinted(check(keeping.folder));
   if (backup_command->parsed()) return back_up(keeping.folder, keeping.file);
   if (restore_command->parsed()) return restore(keeping.file, keeping.folder);
   return serve(serving);

@@ -237,6 +237,8 @@ Result<void> write_output(const Terrain& terrain, const fs::path& file, Progress
   std::error_code failed;
   if (written && progress.cancelled()) written = error(Code::kCancelled, "cancelled");
   if (written) {
+    // What is replaced keeps its permissions.
+    if (const auto present = fs::status(*target, failed); fs::exists(present)) fs::permissions(part, present.permissions(), failed);
     fs::rename(part, *target, failed);
     if (failed) written = not_written(failed.value());
   }

@@ -34,6 +34,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kToleranceNotMet = 3;
+constexpr double kMostSeconds = 1e9;
 constexpr std::uint64_t kFewestVertices = 3;
 
 Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
@@ -41,8 +42,8 @@ Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
     return error(Code::kInvalidValue, "either --tolerance or --max-vertices is needed");
   if (arguments.tolerance && !(std::isfinite(*arguments.tolerance) && *arguments.tolerance >= 0))
     return error(Code::kInvalidValue, "--tolerance must be a number that is not negative");
-  if (arguments.max_seconds && !(*arguments.max_seconds > 0 && *arguments.max_seconds <= 1e9))
-    return error(Code::kInvalidValue, "--max-seconds must be greater than 0");
+  if (arguments.max_seconds && !(*arguments.max_seconds > 0 && *arguments.max_seconds <= kMostSeconds))
+    return error(Code::kInvalidValue, "--max-seconds must be greater than 0, and at most a billion");
   if (arguments.max_vertices && *arguments.max_vertices < kFewestVertices)
     return error(Code::kInvalidValue, "--max-vertices must be at least " + std::to_string(kFewestVertices));
   const auto effort = proto::parse_effort(arguments.effort, "");
@@ -71,19 +72,11 @@ Result<app::ImportRequest> request_of(const SimplifyArguments& arguments) {
   return request;
 }
 
-void write_or_null(proto::JsonWriter& json, const char* name, const std::string& text) {
-  json.key(name);
-  text.empty() ? json.null() : json.string(text);
-}
-
-void print_json(const SimplifyArguments& arguments, const proto::SimplifyResults& results,
-                const tin::frame::Frame& frame) {
+void print_json(const SimplifyArguments& arguments, const proto::SimplifyResults& results) {
   proto::JsonWriter json;
   json.begin_object();
   json.key("input").string(arguments.input);
   json.key("output").string(arguments.output);
-  write_or_null(json, "crs", frame.crs);
-  write_or_null(json, "verticalUnit", frame.vertical_unit);
   proto::write_simplify_report(json, results);
   json.end_object();
   std::printf("%s\n", json.take().c_str());
@@ -160,7 +153,7 @@ int simplify(const SimplifyArguments& arguments) {
   results.duplicates = result.duplicates;
   results.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
-    print_json(arguments, results, result.terrain.frame());
+    print_json(arguments, results);
   } else if (!arguments.quiet) {
     if (bands > 1) std::printf("%s: the first of %d bands is read\n", arguments.input.c_str(), bands);
     print_text(arguments, results, result.terrain.frame().vertical_unit);

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <system_error>
 
 namespace server::cli {
 
@@ -40,6 +42,12 @@ int fail(const std::string& file, const tin::base::Error& error) {
   const std::string at = file.empty() ? "" : file + ": ";
   std::fprintf(stderr, "tinsmith: %s%s\n", at.c_str(), error.message.c_str());
   return 1;
+}
+
+int unless_unprinted(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  const std::string why = std::generic_category().message(errno);
+  return fail("standard output", tin::base::error(tin::base::Code::kStorage, "cannot be written: " + why));
 }
 
 int misuse(const std::string& file, const tin::base::Error& error) {

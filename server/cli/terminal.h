@@ -16,6 +16,8 @@ inline constexpr int kMisuse = 2;
 int fail(const std::string& file, const tin::base::Error& error);
 /// The same of what the command line says. Returns kMisuse.
 int misuse(const std::string& file, const tin::base::Error& error);
+/// The status of a command that printed what it found; 1 if not all of that could be written.
+int unless_unprinted(int status);
 
 /// Shows a bar on standard error while it lives, if that is a terminal and it is wanted.
 class ProgressBar {

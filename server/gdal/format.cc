@@ -152,6 +152,7 @@ Result<Content> look_at(const std::filesystem::path& file) {
   Content content;
   content.bytes = std::filesystem::file_size(file, problem);
   std::ifstream in(file, std::ios::binary);
+  if (std::filesystem::is_directory(file)) return error(Code::kInvalidValue, "It is a folder, not a file");
   if (problem || !in) return error(Code::kInvalidValue, "There is no such file, or it cannot be read");
   content.head.resize(kHeadBytes);
   in.read(content.head.data(), kHeadBytes);

@@ -106,6 +106,10 @@ Result<Import> import_file(const std::filesystem::path& uploaded, const ImportOp
     return tin::base::error(tin::base::Code::kInvalidValue, "Only the points of LAS files have classes",
                             "query:class");
   }
+  if (holds_raster(recognised->format) && !(options.layer.empty() && options.z_field.empty())) {
+    return tin::base::error(tin::base::Code::kInvalidValue, "A raster has neither layers nor fields of heights",
+                            options.layer.empty() ? "query:z-field" : "query:layer");
+  }
   const ImportTask task{options,          *workspace, recognised->format,
                         std::move(asked), progress,   options.heights_only ? rows : nullptr};
   auto import = holds_raster(task.format) ? import_raster(task) : import_points(task);

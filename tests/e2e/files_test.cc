@@ -203,6 +203,7 @@ TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
   expect({input, "-o", out, "--max-vertices", "-5"}, 2, "--max-vertices");
   expect({input, "-o", out, "--max-vertices", "2"}, 2, "--max-vertices");
   expect({input, "-o", out, "-t", "1", "--seed", "-1"}, 2, "--seed");
+  expect({input, "-o", out, "-t", "1", "--seed", "18446744073709551616"}, 2, "--seed");
   expect({input, "-o", out, "-t", "1", "--threads", "-1"}, 2, "--threads");
   expect({input, "-o", out, "-t", "1", "--duplicates", "most"}, 2, "--duplicates");
   expect({input, "-o", out, "-t", "1", "--class", "300"}, 2, "--class");
@@ -211,6 +212,8 @@ TEST_F(FilesTest, WhatIsWrongIsSaidAndNothingIsWritten) {
   expect({input, "-o", path("no/such/out.tif"), "-t", "1"}, 1, "No such file");
   expect({path("nowhere.tif"), "-o", out, "-t", "1"}, 1, "nowhere.tif");
   expect({path("text.txt"), "-o", out, "-t", "1"}, 1, "text.txt");
+  expect({folder_.path(), "-o", out, "-t", "1"}, 1, "folder");
+  expect({input, "-o", out, "-t", "1", "--layer", "dem"}, 1, "layers");
   expect({input, "-o", out, "-t", "1", "--crs", "EPSG:1"}, 1, "no coordinate reference system 1");
   std::string text;
   std::getline(std::ifstream(out), text);
@@ -263,6 +266,25 @@ TEST_F(FilesTest, AWriteThatFailsSaysWhy) {
   EXPECT_EQ(files(), 0U);
 }
 
+TEST_F(FilesTest, AReportThatCannotBeWrittenIsAnError) {
+  const std::string program = TINSMITH_PROGRAM, input = sample_file("olinda");
+  for (const std::string& command : {" info " + input, " simplify " + input + " -t 9 -o " + path("out.ply")}) {
+    for (const char* json : {"", " --json"}) {
+      const Finished done = support::run({"sh", "-c", program + command + json + " > /dev/full"});
+      EXPECT_EQ(done.status, 1) << command << json;
+      EXPECT_NE(done.err.find("standard output"), std::string::npos) << done.err;
+    }
+  }
+}
+
+TEST_F(FilesTest, WhatIsReplacedKeepsItsPermissions) {
+  std::ofstream(path("out.ply")) << "as it was";
+  fs::permissions(path("out.ply"), fs::perms::owner_read | fs::perms::owner_write);
+  ASSERT_EQ(tinsmith({"simplify", sample_file("olinda"), "-t", "9", "-q", "-o", path("out.ply")}).status, 0);
+  EXPECT_TRUE(contents(path("out.ply")).starts_with("ply"));
+  EXPECT_EQ(fs::status(path("out.ply")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(FilesTest, ASignalStopsItWithinASecondAndLeavesNothing) {
   const std::string input = noise(700);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
@@ -285,7 +307,9 @@ TEST_F(FilesTest, ReportsNameTheCrsTheUnitAndTheBandsThatAreNotRead) {
   const std::vector<std::string> words{"simplify", two, "-t", "10", "-o", path("out.ply")};
   auto as_json = words;
   as_json.push_back("--json");
-  const Json report = Json::parse(tinsmith(as_json).out), info = Json::parse(tinsmith({"info", two, "--json"}).out);
+  const std::string text = tinsmith(as_json).out;
+  EXPECT_EQ(text.find("\"crs\""), text.rfind("\"crs\"")) << "once";
+  const Json report = Json::parse(text), info = Json::parse(tinsmith({"info", two, "--json"}).out);
   EXPECT_EQ(report.at("crs"), info.at("crs"));
   EXPECT_EQ(report.at("verticalUnit"), info.at("verticalUnit"));
   EXPECT_EQ(info.at("bands"), 2);
