@@ -147,8 +147,12 @@ struct TinDocument {
   std::vector<Link> links;
 };
 struct SimplifyResults;  // processes/simplify.h
-/// With `simplification`: of a TIN that was simplified while it was made, and what that came to.
-std::string tin_json(const TinDocument& tin, const SimplifyResults* simplification = nullptr);
+/// What came of the data file that a TIN has just been made of.
+struct FileReport {
+  std::uint64_t duplicates = 0;                     // points that stand where another does
+  const SimplifyResults* simplification = nullptr;  // if it was simplified on its way in
+};
+std::string tin_json(const TinDocument& tin, const FileReport* file = nullptr);
 
 struct TinList {
   std::vector<TinDocument> tins;

@@ -42,7 +42,7 @@ void write_source(JsonWriter& json, const SourceInfo& source) {
   json.end_object();
 }
 
-void write_tin(JsonWriter& json, const TinDocument& tin, const SimplifyResults* simplification = nullptr) {
+void write_tin(JsonWriter& json, const TinDocument& tin, const FileReport* file = nullptr) {
   json.begin_object();
   json.key("id").string(tin.id);
   json.key("title").string(tin.title);
@@ -66,9 +66,10 @@ void write_tin(JsonWriter& json, const TinDocument& tin, const SimplifyResults* 
     json.key("source");
     write_source(json, *tin.source);
   }
-  if (simplification != nullptr) {
+  if (file != nullptr) json.key("duplicates").integer(file->duplicates);
+  if (file != nullptr && file->simplification != nullptr) {
     json.key("simplification");
-    write_simplify_results(json, *simplification);
+    write_simplify_results(json, *file->simplification);
   }
   write_links(json, tin.links);
   json.end_object();
@@ -166,9 +167,9 @@ void write_links(JsonWriter& json, std::span<const Link> links) {
   json.end_array();
 }
 
-std::string tin_json(const TinDocument& tin, const SimplifyResults* simplification) {
+std::string tin_json(const TinDocument& tin, const FileReport* file) {
   JsonWriter json;
-  write_tin(json, tin, simplification);
+  write_tin(json, tin, file);
   return json.take();
 }
 

@@ -11,6 +11,7 @@ using tin::base::Result;
 namespace {
 
 constexpr std::size_t kMaxWord = 256;
+constexpr std::int64_t kFewestVertices = 3;
 constexpr double kMinSeconds = 0.001, kMaxSeconds = 86400;
 constexpr std::int64_t kMaxCount = std::int64_t{1} << 53;  // exact in every JSON reader
 
@@ -73,7 +74,7 @@ Result<void> read_goals(const Object& inputs, SimplifyInputs& request) {
     request.tolerance = *tolerance;
   }
   if (const auto member = inputs.find("maxVertices")) {
-    const auto count = member->integer(3, kMaxCount);
+    const auto count = member->integer(kFewestVertices, kMaxCount);
     if (!count) return count.error();
     request.max_vertices = static_cast<std::uint64_t>(*count);
   }
@@ -173,6 +174,11 @@ Result<std::uint64_t> read_keep_flat(const Value& value) {
   return count.error();
 }
 
+Result<void> check_seconds(double seconds, std::string where) {
+  if (seconds >= kMinSeconds && seconds <= kMaxSeconds) return {};
+  return error(Code::kInvalidValue, "maxSeconds must be from 0.001 to 86400", std::move(where));
+}
+
 Result<void> read_means(const Object& inputs, SimplifyInputs& request) {
   if (const auto member = inputs.find("effort")) {
     const auto word = member->string(kMaxWord);
@@ -203,8 +209,7 @@ Result<void> read_means(const Object& inputs, SimplifyInputs& request) {
   if (const auto member = inputs.find("maxSeconds")) {
     const auto seconds = member->number();
     if (!seconds) return seconds.error();
-    if (!(*seconds >= kMinSeconds && *seconds <= kMaxSeconds))
-      return member->error(Code::kInvalidValue, "maxSeconds must be from 0.001 to 86400");
+    if (auto fine = check_seconds(*seconds, member->pointer()); !fine) return fine;
     request.max_seconds = *seconds;
   }
   if (const auto member = inputs.find("seed")) {
@@ -247,6 +252,21 @@ Result<std::uint64_t> parse_keep_flat(std::string_view text, std::string where) 
   if (!count && count.error().code == Code::kMalformed)
     return error(Code::kMalformed, "keepFlat is true, false or a number of samples", std::move(where));
   return count;
+}
+
+Result<std::uint64_t> parse_max_vertices(std::string_view text, const std::string& where) {
+  return parse_count(text, kFewestVertices, kMaxCount, where);
+}
+
+Result<double> parse_max_seconds(std::string_view text, const std::string& where) {
+  const auto seconds = parse_number(text, where);
+  if (!seconds) return seconds;
+  if (auto fine = check_seconds(*seconds, where); !fine) return fine.error();
+  return seconds;
+}
+
+Result<std::uint64_t> parse_seed(std::string_view text, const std::string& where) {
+  return parse_count(text, 0, kMaxCount, where);
 }
 
 Result<SimplifyAgainst> parse_against(std::string_view text, std::string where) {

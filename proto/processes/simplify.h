@@ -33,6 +33,12 @@ inline constexpr std::uint64_t kPlateauSamples = 64;
 /// kMalformed, kInvalidValue.
 tin::base::Result<std::uint64_t> parse_keep_flat(std::string_view text, std::string where);
 
+/// How many vertices may remain, after how many seconds the search ends, and what it follows, as they stand in a query. Errors:
+/// kMalformed, kInvalidValue.
+tin::base::Result<std::uint64_t> parse_max_vertices(std::string_view text, const std::string& where);
+tin::base::Result<double> parse_max_seconds(std::string_view text, const std::string& where);
+tin::base::Result<std::uint64_t> parse_seed(std::string_view text, const std::string& where);
+
 /// Which vertices stay.
 struct SimplifyProtect {
   using Ring = std::vector<Position2>;  // closed or not

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "proto/messages.h"
-#include "proto/processes/simplify.h"
 #include "server/api/answer.h"
 
 namespace server::api {
@@ -11,8 +10,8 @@ struct Context;
 
 proto::TinDocument tin_document(const app::Tin& tin);
 
-/// 201 with Location, ETag and the document; with `simplification`, if there was one.
+/// 201 with Location, ETag and the document; with what is to be said of the file, if it was made of one.
 Response created_answer(const Context& context, const app::Tin& tin, const Request& request,
-                        const proto::SimplifyResults* simplification = nullptr);
+                        const proto::FileReport* file = nullptr);
 
 }  // namespace server::api

@@ -80,10 +80,10 @@ proto::TinDocument tin_document(const app::Tin& tin) {
 }
 
 Response created_answer(const Context& context, const app::Tin& tin, const Request& request,
-                        const proto::SimplifyResults* simplification) {
+                        const proto::FileReport* file) {
   proto::TinDocument document = tin_document(tin);
   make_absolute(document.links, base_url(context.config, request));
-  Response response = json_answer(proto::tin_json(document, simplification), 201);
+  Response response = json_answer(proto::tin_json(document, file), 201);
   response.headers.emplace_back("Location", "/tins/" + tin.id());
   Request self;
   self.path = "/tins/" + tin.id();
@@ -242,7 +242,8 @@ void add_tins(http::Router& router, Context& context) {
   router.add({.method = Method::kPost,
               .pattern = "/tins",
               .query = {"id", "title", "crs", "resolution", "layer", "z-field", "class", "vertical-unit",
-                        "duplicates", "format", "tolerance", "effort", "elevations", "keepFlat", "against"},
+                        "duplicates", "format", "tolerance", "maxVertices", "effort", "elevations", "keepFlat", "against",
+                        "maxSeconds", "seed"},
               .body = http::BodyKind::kByType,
               .handler = on(create)});
   router.add({.method = Method::kGet, .pattern = "/tins/{tin}", .handler = on(show)});

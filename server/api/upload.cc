@@ -44,22 +44,34 @@ Result<std::vector<std::uint8_t>> parse_classes(const std::string& text) {
   return classes;
 }
 
-/// What the parameter tolerance and those that go with it ask for, if it is there.
-Result<std::optional<tin::simplify::Options>> read_simplification(const Request& request) {
-  const auto text = request.query_value("tolerance");
-  if (!text) {
-    for (const std::string name : {"effort", "elevations", "keepFlat", "against"}) {
-      if (request.query_value(name))
-        return error(Code::kInvalidValue, name + " goes with a tolerance.", "query:" + name);
-    }
-    return std::optional<tin::simplify::Options>();
-  }
-  const auto tolerance = proto::parse_number(*text, "query:tolerance");
-  if (!tolerance) return tolerance.error();
-  if (!(*tolerance >= 0))
-    return error(Code::kInvalidValue, "A tolerance must not be negative.", "query:tolerance");
+/// The goals of a simplification, if one is asked for.
+Result<std::optional<tin::simplify::Options>> read_goals(const Request& request) {
   tin::simplify::Options options;
-  options.tolerance = *tolerance;
+  if (const auto text = request.query_value("tolerance")) {
+    const auto tolerance = proto::parse_number(*text, "query:tolerance");
+    if (!tolerance) return tolerance.error();
+    if (!(*tolerance >= 0))
+      return error(Code::kInvalidValue, "A tolerance must not be negative.", "query:tolerance");
+    options.tolerance = *tolerance;
+  }
+  if (const auto text = request.query_value("maxVertices")) {
+    const auto count = proto::parse_max_vertices(*text, "query:maxVertices");
+    if (!count) return count.error();
+    options.max_vertices = static_cast<std::size_t>(*count);
+  }
+  if (options.tolerance || options.max_vertices) return std::optional(std::move(options));
+  for (const std::string name : {"effort", "elevations", "keepFlat", "against", "maxSeconds", "seed"}) {
+    if (request.query_value(name))
+      return error(Code::kInvalidValue, name + " goes with a tolerance or maxVertices.", "query:" + name);
+  }
+  return std::optional<tin::simplify::Options>();
+}
+
+/// What the parameters tolerance and maxVertices and those that go with them ask for, if one of them is there.
+Result<std::optional<tin::simplify::Options>> read_simplification(const Request& request) {
+  auto goals = read_goals(request);
+  if (!goals || !*goals) return goals;
+  tin::simplify::Options& options = **goals;
   options.threads = app::engine_threads();
   if (const auto effort = request.query_value("effort")) {
     const auto named = proto::parse_effort(*effort, "query:effort");
@@ -81,7 +93,21 @@ Result<std::optional<tin::simplify::Options>> read_simplification(const Request&
     if (!named) return named.error();
     options.against = processes::against_of(*named);
   }
-  return std::optional(std::move(options));
+  if (const auto text = request.query_value("seed")) {
+    const auto seed = proto::parse_seed(*text, "query:seed");
+    if (!seed) return seed.error();
+    options.seed = *seed;
+  }
+  return goals;
+}
+
+/// How long a simplification may take.
+Result<double> read_max_seconds(const Context& context, const Request& request) {
+  const auto text = request.query_value("maxSeconds");
+  if (!text) return processes::allowed_seconds(context, std::nullopt, {});
+  const auto seconds = proto::parse_max_seconds(*text, "query:maxSeconds");
+  if (!seconds) return seconds.error();
+  return processes::allowed_seconds(context, *seconds, "query:maxSeconds");
 }
 
 Result<app::ImportRequest> read_request(const Context& context, const Request& request) {
@@ -136,7 +162,9 @@ Result<app::ImportRequest> read_request(const Context& context, const Request& r
   auto simplify = read_simplification(request);
   if (!simplify) return simplify.error();
   import.simplify = *std::move(simplify);
-  import.max_seconds = static_cast<double>(context.config.jobs.simplify_seconds);
+  const auto seconds = read_max_seconds(context, request);
+  if (!seconds) return seconds.error();
+  import.max_seconds = *seconds;
   return import;
 }
 
@@ -176,7 +204,8 @@ Result<Response> import_as_job(Context& context, Request& request, app::ImportRe
         const auto made = app::import_tin(context.catalogue, file->path, import, progress);
         if (!made) return made.error();
         const auto simplification = simplification_of(*made);
-        return proto::tin_json(tin_document(*made->tin), simplification ? &*simplification : nullptr);
+        const proto::FileReport told{made->duplicates, simplification ? &*simplification : nullptr};
+        return proto::tin_json(tin_document(*made->tin), &told);
       });
   if (!job) return job.error();
   return job_accepted_answer(context.jobs, *job, request);
@@ -231,7 +260,8 @@ Result<Response> create_from_upload(Context& context, Request& request) {
   const auto made = app::import_tin(context.catalogue, request.body_file, *import, progress);
   if (!made) return made.error();
   const auto simplification = simplification_of(*made);
-  return created_answer(context, *made->tin, request, simplification ? &*simplification : nullptr);
+  const proto::FileReport told{made->duplicates, simplification ? &*simplification : nullptr};
+  return created_answer(context, *made->tin, request, &told);
 }
 
 }  // namespace server::api

@@ -41,13 +41,19 @@ Result<ImportedTerrain> build_whole(gdal::Import import, Duplicates duplicates, 
                          std::move(import.driver), dropped};
 }
 
+/// Of what a simplification is asked for, the number of vertices alone may turn out to be impossible.
+tin::base::Error at_its_parameter(tin::base::Error error, const tin::simplify::Options& options) {
+  if (error.code == tin::base::Code::kInvalidValue && options.max_vertices) error.where = "query:maxVertices";
+  return error;
+}
+
 /// A raster becomes a simplified terrain without one of all its samples.
 Result<ImportedTerrain> build_from_heights(gdal::Import import, const tin::simplify::Options& options,
                                            Progress& progress) {
   SourceSamples source = raster_source(import);
   progress.begin_phase(kRead, kChosen);
   auto chosen = tin::simplify::simplify_samples(source, options, &progress);
-  if (!chosen) return chosen.error();
+  if (!chosen) return at_its_parameter(chosen.error(), options);
   progress.begin_phase(kChosen, kBuilt);
   auto terrain = Terrain::build(std::move(import.frame), chosen->vertices, Duplicates::kReject, &progress,
                                 engine_threads());
@@ -64,7 +70,7 @@ Result<ImportedTerrain> build_from_points(gdal::Import import, Duplicates duplic
   if (!made) return made.error();
   progress.begin_phase(kPointsBuilt, kBuilt);
   auto outcome = tin::simplify::simplify(made->terrain, nullptr, {}, options, &progress);
-  if (!outcome) return outcome.error();
+  if (!outcome) return at_its_parameter(outcome.error(), options);
   made->terrain = thinned(made->terrain, {std::move(outcome->removed), {}, std::move(outcome->reset)});
   made->report = outcome->report;
   // Its samples were the vertices, of which no copy was needed; they are the source's points all the same.

@@ -47,6 +47,8 @@ TEST_F(ImportsTest, ClassesThatAreNoneChangeNothing) {
            {"?class=77", kCloud, 422},
            {"?class=2", "x,y,z\n1,2,3\n", 422},
            {"?format=las", "x,y,z\n1,2,3\n", 415},
+           {"?layer=none", ascii_grid(4, 4), 422},
+           {"?z-field=z", ascii_grid(4, 4), 422},
            {"?layer=none", "<LandXML><Surfaces/></LandXML>", 422},
            {"", "<LandXML><Surfaces/></LandXML>", 422},
            {"", "v 1 2\n", 400},
@@ -98,6 +100,38 @@ TEST_F(ImportsTest, WhatIsSimplifiedOnItsWayInSaysHowGoodItIs) {
   EXPECT_FALSE(Json::parse(upload("?id=whole", grid).body).contains("simplification"));
 }
 
+TEST_F(ImportsTest, WhatIsSimplifiedOnItsWayInMayBeBoundInVerticesAndTime) {
+  const std::string grid = ascii_grid(60, 60);
+  const auto report = [&](const std::string& query) {
+    const RawAnswer made = upload(query, grid);
+    EXPECT_EQ(made.status, 201) << made.body;
+    const Json tin = Json::parse(made.body);
+    EXPECT_LE(tin.at("vertexCount"), 40);
+    EXPECT_EQ(tin.at("duplicates"), 0);
+    return tin.at("simplification");
+  };
+  const Json few = report("?id=few&maxVertices=40");
+  EXPECT_EQ(few.at("toleranceMet"), true);
+  const Json both = report("?id=both&maxVertices=40&tolerance=0&seed=7&effort=fast&maxSeconds=20");
+  EXPECT_EQ(both.at("toleranceMet"), false);
+  // At the limit and one past it; what the hull needs is known only when the file is read.
+  const std::string before = server_.state();
+  for (const auto& [query, where] : std::vector<std::pair<std::string, std::string>>{
+           {"?maxVertices=2", "maxVertices"},
+           {"?maxVertices=x", "maxVertices"},
+           {"?maxVertices=3", "maxVertices"},
+           {"?maxVertices=9&maxSeconds=0", "maxSeconds"},
+           {"?maxVertices=9&maxSeconds=86401", "maxSeconds"},
+           {"?tolerance=1&seed=-1", "seed"},
+           {"?seed=1", "seed"},
+           {"?maxSeconds=5", "maxSeconds"}}) {
+    const RawAnswer refused = upload(query, grid);
+    EXPECT_TRUE(refused.status == 400 || refused.status == 422) << query << refused.status;
+    EXPECT_EQ(Json::parse(refused.body).at("where"), "query:" + where) << refused.body;
+  }
+  EXPECT_EQ(server_.state(), before);
+}
+
 /// Points at one place are one sample: the report says how many went so, and which point is worst of the rest.
 TEST_F(ImportsTest, WhatIsSimplifiedOfPointsTellsOfDuplicatesAndOfTheWorstPoint) {
   std::string points = "x,y,z\n";
@@ -116,6 +150,7 @@ TEST_F(ImportsTest, WhatIsSimplifiedOfPointsTellsOfDuplicatesAndOfTheWorstPoint)
   EXPECT_EQ(report.at("maxErrorSample"), (Json{{"z", 4}, {"index", 16}}));
   EXPECT_EQ(report.at("verticalUnit"), "foot");
   EXPECT_EQ(report.at("crs"), "EPSG:32632");
+  EXPECT_EQ(Json::parse(upload("?id=whole", points).body).at("duplicates"), 3) << "nor do they go without a word else";
 }
 
 /// Nobody waits for it any more, so nothing comes of it.

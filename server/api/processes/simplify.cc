@@ -87,18 +87,14 @@ Result<Execution> prepare(Context& context, const proto::Value& value) {
   if (!inputs) return inputs.error();
   const auto tin = find_input_tin(context, inputs->tin);
   if (!tin) return tin.error();
-  const auto most_seconds = static_cast<double>(context.config.jobs.simplify_seconds);
-  if (inputs->max_seconds && *inputs->max_seconds > most_seconds)
-    return tin::base::error(tin::base::Code::kInvalidValue,
-                            "maxSeconds is at most " + std::to_string(context.config.jobs.simplify_seconds) +
-                                " on this server.",
-                            "/inputs/maxSeconds");
+  const auto seconds = allowed_seconds(context, inputs->max_seconds, "/inputs/maxSeconds");
+  if (!seconds) return seconds.error();
   if (inputs->as) {
     if (auto room = check_new_tin(context, inputs->as); !room) return room.error();
   }
   auto protect = protection_of(**tin, inputs->protect);
   if (!protect) return protect.error();
-  app::SimplifyRequest wanted{*tin, {}, inputs->max_seconds.value_or(most_seconds), *std::move(protect), inputs->as};
+  app::SimplifyRequest wanted{*tin, {}, *seconds, *std::move(protect), inputs->as};
   wanted.options.effort = effort_of(inputs->effort);
   wanted.options.elevations = elevations_of(inputs->elevations);
   wanted.options.against = against_of(inputs->against);
@@ -138,6 +134,15 @@ tin::simplify::Elevations elevations_of(proto::SimplifyElevations elevations) {
 
 tin::simplify::Against against_of(proto::SimplifyAgainst against) {
   return against == proto::SimplifyAgainst::kSurface ? tin::simplify::Against::kSurface : tin::simplify::Against::kSamples;
+}
+
+Result<double> allowed_seconds(const Context& context, std::optional<double> seconds, std::string where) {
+  const std::int64_t most = context.config.jobs.simplify_seconds;
+  if (seconds && *seconds > static_cast<double>(most)) {
+    return tin::base::error(tin::base::Code::kInvalidValue,
+                            "maxSeconds is at most " + std::to_string(most) + " on this server.", std::move(where));
+  }
+  return seconds.value_or(static_cast<double>(most));
 }
 
 proto::SimplifyResults results_of(const tin::simplify::Report& report, const tin::terrain::Terrain& terrain) {
