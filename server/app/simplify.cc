@@ -24,9 +24,9 @@ struct InForce {
   const SourceSamples* get() const { return samples ? &*samples : nullptr; }
 };
 
-/// None where no source is kept, or no surface is left.
+/// None where no source is kept.
 InForce in_force(std::shared_ptr<const SourceSamples> source, const Terrain& terrain, Simplified& result) {
-  if (!source || terrain.mesh().dimension() < 2) return InForce();
+  if (!source) return InForce();
   auto samples = terrain.amendments().in_force(*source, terrain);
   result.against_source = true;
   result.out_of_force = source->sample_count() - samples.sample_count();

@@ -35,8 +35,8 @@ std::vector<std::string> seeds() {
   parts.kind = terrain::SourceKind::kPoints;
   parts.thinned = true;
   parts.next_deed = 6;
-  parts.deeds = {{4, 0x0123456789abcdef, 1}, {5, 7, 0}};
-  parts.touches = {{{1, 5}, 4}};
+  parts.deeds = {{4, 0x0123456789abcdef, 1, true}, {5, 7, 0, false}};
+  parts.touches = {{{1, 5}, 4}, {{1, 6}, 0}};
   parts.areas = {{{exact::Point{0, 9}, exact::Point{1, 5}, exact::Point{9, 5}}, 3}};
   parts.own = {{{{2, 6}, 1.5}, 0}, {{{2, 6}, 2.5}, 5}};
   codec::Checkpoint edited = points;

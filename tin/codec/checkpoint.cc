@@ -23,8 +23,7 @@ constexpr std::uint16_t kPlainVersion = 1;   // without amendments
 constexpr std::uint16_t kUntoldVersion = 2;  // amendments that do not tell which edit made them
 constexpr std::size_t kSmallestPosition = 2;
 constexpr std::size_t kSmallestTriangle = 3 * kSmallestPosition + 1;
-constexpr std::size_t kSmallestTouch = kSmallestPosition + 1;
-constexpr std::size_t kSmallestDeed = 1 + 8 + 1;
+constexpr std::size_t kSmallestDeed = 1 + 8 + 1 + 1;
 constexpr std::size_t kSmallestOwn = kSmallestPosition + 8;
 constexpr std::size_t kSmallestVertex = 1 + (1 + 1 + 8);  // id, placement
 constexpr std::uint8_t kDuplicatePolicies = 6;
@@ -224,6 +223,7 @@ void write_amendments(Writer& out, const Amendments& amendments) {
     out.varint(deed.number);
     out.u64(deed.fingerprint);
     out.varint(deed.triangles);
+    out.u8(deed.shrank ? 1 : 0);
   }
   out.varint(parts.touches.size());
   for (const terrain::Touch& touch : parts.touches) {
@@ -252,6 +252,7 @@ std::vector<terrain::Deed> read_deeds(Reader& in, std::uint64_t next_deed) {
     before = deed.number;
     deed.fingerprint = in.u64();
     deed.triangles = in.varint();
+    deed.shrank = read_flag(in);
   }
   return deeds;
 }
@@ -271,7 +272,8 @@ void read_touches(Reader& in, Amendments::Parts& parts) {
   auto& touches = parts.touches;
   touches.resize(in.count(kSmallestPosition));
   for (std::size_t i = 0; i < touches.size() && in.ok(); ++i) {
-    touches[i] = {in.at(), read_deed_number(in, parts)};
+    touches[i].at = in.at();
+    touches[i].deed = read_deed_number(in, parts);
     if (i == 0) continue;
     const auto &a = touches[i - 1], &b = touches[i];
     in.require(a.at < b.at || (a.at == b.at && a.deed < b.deed), "touched positions do not ascend");

@@ -7,6 +7,7 @@
 
 #include "tin/exact/predicates.h"
 #include "tin/terrain/digest.h"
+#include "tin/terrain/position_buckets.h"
 #include "tin/terrain/terrain.h"
 
 namespace tin::terrain {
@@ -27,19 +28,18 @@ bool comes_before(const OwnSample& a, const OwnSample& b) {
   return a.sample.at != b.sample.at ? a.sample.at < b.sample.at : a.maker < b.maker;
 }
 
-/// The last deed, of those up to `last`, that touched `p`; nothing: none did. Requires: the touches ascend.
-std::optional<DeedNumber> last_to_touch(std::span<const Touch> touches, Point p, DeedNumber last = kAnyDeed) {
+/// By the last deed, of those up to `last`, that touched `p`; null: none did. Requires: the touches ascend.
+const Touch* last_touch(std::span<const Touch> touches, Point p, DeedNumber last = kAnyDeed) {
   const Touch limit{p, last};
   const auto after = std::upper_bound(touches.begin(), touches.end(), limit,
                                       [](const Touch& a, const Touch& b) { return comes_before(a, b); });
-  if (after == touches.begin() || std::prev(after)->at != p) return std::nullopt;
-  return std::prev(after)->deed;
+  return after == touches.begin() || std::prev(after)->at != p ? nullptr : &*std::prev(after);
 }
 
-/// What a change comes to: where vertices that it changes stood before and stand after it, ascending.
-std::vector<Point> positions_of(const Change& change) {
+/// Where vertices stand that a change made otherwise than they were, and where they stood: ascending.
+std::vector<Point> positions_of(std::span<const Step> net) {
   std::vector<Point> positions;
-  for (const Step& step : net_steps(change)) {
+  for (const Step& step : net) {
     if (step.before) positions.push_back(step.before->at);
     if (step.after) positions.push_back(step.after->at);
   }
@@ -63,30 +63,10 @@ std::pair<std::int64_t, std::int64_t> cells_between(std::int64_t low, std::int64
   return {std::max<std::int64_t>(first, 0), std::min(last, count - 1)};
 }
 
-/// Calls visit(index) for each of the samples, which ascend, strictly inside the triangle's area.
+/// Calls visit(sample) for each sample of the grid strictly inside the triangle's area.
 template <class Visit>
-void visit_inside(std::span<const OwnSample> samples, const EditedTriangle& t, const Visit& visit) {
+void visit_inside(const SourceGrid& grid, const EditedTriangle& t, const Visit& visit) {
   const auto [low, high] = box(t);
-  for (auto at = std::lower_bound(samples.begin(), samples.end(), low,
-                                  [](const OwnSample& one, Point p) { return one.sample.at < p; });
-       at != samples.end() && at->sample.at.x <= high.x; ++at) {
-    if (is_inside(t, at->sample.at)) visit(static_cast<std::size_t>(at - samples.begin()));
-  }
-}
-
-/// Calls visit(sample) for each sample of the source strictly inside the triangle's area.
-template <class Visit>
-void visit_inside(const SourceSamples& source, const EditedTriangle& t, const Visit& visit) {
-  const auto [low, high] = box(t);
-  if (!source.is_raster()) {
-    const auto points = source.positions();
-    for (auto p = std::lower_bound(points.begin(), points.end(), low); p != points.end() && p->x <= high.x;
-         ++p) {
-      if (is_inside(t, *p)) visit(static_cast<std::size_t>(p - points.begin()));
-    }
-    return;
-  }
-  const SourceGrid& grid = *source.grid();
   const auto columns = cells_between(low.x, high.x, grid.x0, grid.dx, grid.width);
   const auto rows = cells_between(low.y, high.y, grid.y0, grid.dy, grid.height);
   for (std::int64_t row = rows.first; row <= rows.second; ++row) {
@@ -97,10 +77,31 @@ void visit_inside(const SourceSamples& source, const EditedTriangle& t, const Vi
   }
 }
 
-/// The terrain's outline: tells what it does not cover. Requires: dimension 2.
+/// Calls visit(sample) for each sample of the source strictly inside one of the areas.
+template <class Visit>
+void visit_inside(const SourceSamples& source, std::span<const EditedTriangle> areas, const Visit& visit) {
+  if (areas.empty()) return;
+  if (source.is_raster()) {
+    for (const EditedTriangle& t : areas) visit_inside(*source.grid(), t, visit);
+    return;
+  }
+  const auto points = source.positions();
+  PositionBuckets buckets(points.size(), [&](std::size_t i) { return points[i]; });
+  for (const EditedTriangle& t : areas) {
+    const auto [low, high] = box(t);
+    buckets.visit(low, high, [&](std::size_t i) {
+      const bool inside = is_inside(t, points[i]);
+      if (inside) visit(i);
+      return inside;
+    });
+  }
+}
+
+/// The terrain's outline: tells what it does not cover. One without a surface covers nothing.
 class Outline {
  public:
   explicit Outline(const mesh::Mesh& mesh) {
+    if (mesh.dimension() < 2) return;
     std::vector<mesh::HalfEdge> link;
     mesh.link(mesh::kInfinite, link);
     for (const mesh::HalfEdge e : link) {
@@ -113,6 +114,7 @@ class Outline {
   }
 
   bool covers(Point p) const {
+    if (corners_.empty()) return false;
     Point from = corners_.back();
     for (const Point to : corners_) {  // clockwise
       if (exact::orientation(from, to, p) > 0) return false;
@@ -141,6 +143,14 @@ void visit_uncovered(const SourceSamples& source, const Terrain& terrain, const 
     while (first < last && visit_unless_covered(first)) ++first;
     while (first < last && visit_unless_covered(last - 1)) --last;
   }
+}
+
+/// Whether vertices left the outline, so that it has moved inwards.
+bool has_shrunk(const Terrain& after, std::span<const Step> net) {
+  const auto leaves = [](const Step& step) { return step.before && (!step.after || step.after->at != step.before->at); };
+  if (std::none_of(net.begin(), net.end(), leaves)) return false;
+  const Outline outline(after.mesh());
+  return std::any_of(net.begin(), net.end(), [&](const Step& step) { return leaves(step) && !outline.covers(step.before->at); });
 }
 
 }  // namespace
@@ -178,10 +188,13 @@ void Amendments::take(const Terrain& after, const Change& change) {
     case Cause::kEdit:
       return take_edit(after, change);
     case Cause::kUndo:
-      return take_undo(after, change);
+      if (!forget(change.inverse())) take_touches(net_steps(change), fingerprint(change));
+      return;
     case Cause::kSimplification:
       return take_simplification(after, change);
     case Cause::kRevert:
+      // Journals from before kUndo say it of edits, too.
+      if (!forget(change.inverse()) && thinned()) take_simplification(after, change);
       return;
   }
 }
@@ -191,24 +204,29 @@ bool Amendments::is_off_pixels(const Terrain& terrain, Point p) const {
   return kind() == SourceKind::kRaster && grid != nullptr && !grid->cell_centred_at(p);
 }
 
-void Amendments::take_edit(const Terrain& after, const Change& change) {
+/// The new deed; null: nothing is otherwise than before.
+Deed* Amendments::take_touches(std::span<const Step> net, std::uint64_t print) {
   // While all samples are vertices and there is no source, what people touch is a sample as all others.
-  if (kind() == SourceKind::kNone && !thinned()) return;
-  const auto positions = positions_of(change);
-  if (positions.empty()) return;
-  Deed deed{parts_.next_deed++, fingerprint(change), 0};
-  for (const Point p : positions) parts_.touches.push_back({p, deed.number});
+  if (net.empty() || (kind() == SourceKind::kNone && !thinned())) return nullptr;
+  const Deed deed{parts_.next_deed++, print, 0, false};
+  for (const Point p : positions_of(net)) parts_.touches.push_back({p, deed.number});
   if (parts_.touches.size() - sorted_ > sorted_ + kFewRecent) {
     parts_.touches = touches();
     sorted_ = parts_.touches.size();
   }
-  if (thinned()) {
-    const auto area = edited_area(after, change);
-    parts_.areas.insert(parts_.areas.end(), area.begin(), area.end());
-    deed.triangles = area.size();
-  }
   parts_.deeds.push_back(deed);
   if (parts_.deeds.size() > kMostDeeds) forget_names();
+  return &parts_.deeds.back();
+}
+
+void Amendments::take_edit(const Terrain& after, const Change& change) {
+  const auto net = net_steps(change);
+  Deed* const deed = take_touches(net, fingerprint(change));
+  if (deed == nullptr || !thinned()) return;
+  const auto area = edited_area(after, change);
+  parts_.areas.insert(parts_.areas.end(), area.begin(), area.end());
+  deed->triangles = area.size();
+  deed->shrank = has_shrunk(after, net);
 }
 
 /// The older half of the deeds will not be known again: so long after, their undoing is an edit.
@@ -234,66 +252,93 @@ void Amendments::forget_names() {
   deeds.erase(deeds.begin(), half);
 }
 
-/// Which of people's samples deeds up to `last` hold that came after them. Their numbers tell the order.
-std::vector<bool> Amendments::overruled(std::span<const Touch> all_touches, DeedNumber last) const {
-  const auto& own = parts_.own;
-  std::vector<bool> out(own.size());
-  auto area = parts_.areas.end();
-  for (auto deed = parts_.deeds.rbegin(); deed != parts_.deeds.rend(); ++deed) {
-    for (std::uint64_t i = 0; i < deed->triangles; ++i) {
-      --area;
-      if (deed->number > last) continue;
-      visit_inside(own, *area, [&](std::size_t sample) {
-        if (own[sample].maker < deed->number) out[sample] = true;
+/// Of each position, the last deed up to `last` that touched it or holds it strictly inside its area. Requires: the touches ascend.
+std::vector<std::optional<DeedNumber>> Amendments::last_deeds(std::span<const Point> positions, std::span<const Touch> all_touches,
+                                               DeedNumber last) const {
+  std::vector<std::optional<DeedNumber>> out(positions.size());
+  if (!parts_.areas.empty()) {
+    PositionBuckets buckets(positions.size(), [&](std::size_t i) { return positions[i]; });
+    const auto visit = [&](const EditedTriangle& t, DeedNumber deed) {
+      const auto [low, high] = box(t);
+      buckets.visit(low, high, [&](std::size_t position) {
+        const bool inside = is_inside(t, positions[position]);
+        if (inside) out[position] = deed;
+        return inside;
       });
+    };
+    auto area = parts_.areas.end();
+    for (auto deed = parts_.deeds.rbegin(); deed != parts_.deeds.rend(); ++deed) {
+      for (std::uint64_t i = 0; i < deed->triangles; ++i) {
+        --area;
+        if (deed->number <= last) visit(*area, deed->number);
+      }
     }
+    while (area != parts_.areas.begin()) visit(*--area, 0);
   }
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    if (last_to_touch(all_touches, own[i].sample.at, last).value_or(0) > own[i].maker) out[i] = true;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Touch* const touch = last_touch(all_touches, positions[i], last);
+    if (touch != nullptr) out[i] = std::max(out[i].value_or(0), touch->deed);
   }
   return out;
 }
 
-void Amendments::take_undo(const Terrain& after, const Change& change) {
-  const std::uint64_t undone = fingerprint(change.inverse());
-  const auto deed = std::find_if(parts_.deeds.rbegin(), parts_.deeds.rend(),
-                                 [&](const Deed& one) { return one.fingerprint == undone; });
-  if (deed == parts_.deeds.rend()) return take_edit(after, change);
-  forget(static_cast<std::size_t>(parts_.deeds.rend() - deed) - 1);
+/// Which of people's samples deeds up to `last` hold or touched that came after them. Their numbers tell the order.
+std::vector<bool> Amendments::overruled(std::span<const Touch> all_touches, DeedNumber last) const {
+  const auto& own = parts_.own;
+  std::vector<Point> positions;
+  positions.reserve(own.size());
+  for (const OwnSample& one : own) positions.push_back(one.sample.at);
+  const auto deeds = last_deeds(positions, all_touches, last);
+  std::vector<bool> out(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) out[i] = deeds[i].value_or(0) > own[i].maker;
+  return out;
 }
 
-void Amendments::forget(std::size_t deed) {
-  auto& [kind, thinned, next_deed, deeds, touches, areas, own] = parts_;
-  const DeedNumber number = deeds[deed].number;
-  std::uint64_t later = 0;
-  for (std::size_t i = deed + 1; i < deeds.size(); ++i) later += deeds[i].triangles;
+/// False: no such edit stands, or others came to the same positions after it, so that it fits by chance only.
+bool Amendments::forget(const Change& edit) {
+  auto& [kind, thinned, next_deed, deeds, all_touches, areas, own] = parts_;
+  const std::uint64_t print = fingerprint(edit);
+  std::uint64_t later = 0;  // triangles
+  auto deed = deeds.end();
+  while (deed != deeds.begin() && std::prev(deed)->fingerprint != print) later += (--deed)->triangles;
+  if (deed == deeds.begin()) return false;
+  --deed;
+  const DeedNumber number = deed->number;
+  all_touches = touches();
+  sorted_ = all_touches.size();
+  for (std::size_t i = 0; i + 1 < all_touches.size(); ++i) {
+    if (all_touches[i].deed == number && all_touches[i + 1].at == all_touches[i].at) return false;
+  }
+  std::erase_if(all_touches, [&](const Touch& touch) { return touch.deed == number; });
+  sorted_ = all_touches.size();
   const auto last = areas.end() - static_cast<std::ptrdiff_t>(later);
-  areas.erase(last - static_cast<std::ptrdiff_t>(deeds[deed].triangles), last);
-  const auto sorted = std::remove_if(touches.begin(), touches.begin() + static_cast<std::ptrdiff_t>(sorted_),
-                                     [&](const Touch& touch) { return touch.deed == number; });
-  const auto recent = touches.erase(sorted, touches.begin() + static_cast<std::ptrdiff_t>(sorted_));
-  sorted_ = static_cast<std::size_t>(recent - touches.begin());
-  touches.erase(std::remove_if(recent, touches.end(), [&](const Touch& touch) { return touch.deed == number; }),
-                touches.end());
+  areas.erase(last - static_cast<std::ptrdiff_t>(deed->triangles), last);
   std::erase_if(own, [&](const OwnSample& one) { return one.maker == number; });
-  deeds.erase(deeds.begin() + static_cast<std::ptrdiff_t>(deed));
+  deeds.erase(deed);
+  return true;
 }
 
-/// What goes, or gets another height, stays a sample; the source keeps its own.
+/// What goes, or gets another height, stays a sample; where no edit was, the source keeps its own. It is the same when one is
+/// undone.
 void Amendments::take_simplification(const Terrain& after, const Change& change) {
   if (change.steps.empty()) return;
   set_thinned();
   parts_.touches = touches();
   sorted_ = parts_.touches.size();
+  std::vector<Placement> gone;
+  std::vector<Point> positions;
+  for (const Step& step : change.steps) {
+    if (!step.before) continue;
+    gone.push_back(*step.before);
+    positions.push_back(step.before->at);
+  }
+  const auto deeds = last_deeds(positions, parts_.touches, kAnyDeed);
   auto& own = parts_.own;
   const auto in_order = [](const OwnSample& a, const OwnSample& b) { return comes_before(a, b); };
   std::vector<OwnSample> more;
-  for (const Step& step : change.steps) {
-    if (!step.before) continue;
-    const Point p = step.before->at;
-    const auto maker = last_to_touch(parts_.touches, p);
-    if (!maker && kind() != SourceKind::kNone && !is_off_pixels(after, p)) continue;
-    const OwnSample sample{*step.before, maker.value_or(0)};
+  for (std::size_t i = 0; i < gone.size(); ++i) {
+    if (!deeds[i] && kind() != SourceKind::kNone && !is_off_pixels(after, gone[i].at)) continue;
+    const OwnSample sample{gone[i], deeds[i].value_or(0)};
     if (!std::binary_search(own.begin(), own.end(), sample, in_order)) more.push_back(sample);
   }
   std::sort(more.begin(), more.end(), in_order);
@@ -317,28 +362,32 @@ std::vector<Point> Amendments::rim(const Terrain& terrain) const {
   return out;
 }
 
+/// Whether people may have removed what made the terrain as large as its samples are.
+bool Amendments::may_have_shrunk() const {
+  const auto is_unknown = [](const Touch& touch) { return touch.deed == 0; };
+  return std::any_of(parts_.deeds.begin(), parts_.deeds.end(), [](const Deed& deed) { return deed.shrank; }) ||
+         std::any_of(parts_.touches.begin(), parts_.touches.end(), is_unknown);
+}
+
 SourceSamples Amendments::in_force(const SourceSamples& original, const Terrain& terrain) const {
-  const auto edited = touched();
   std::vector<std::size_t> gone;
-  for (const Point p : edited) {
+  for (const Point p : touched()) {
     if (const auto sample = original.find(p)) gone.push_back(*sample);
   }
-  for (const EditedTriangle& t : areas())
-    visit_inside(original, t, [&](std::size_t sample) { gone.push_back(sample); });
-  // Only who removes vertices makes a terrain smaller than its samples.
-  if (!edited.empty())
-    visit_uncovered(original, terrain, [&](std::size_t sample) { gone.push_back(sample); });
+  visit_inside(original, areas(), [&](std::size_t sample) { gone.push_back(sample); });
+  if (may_have_shrunk()) visit_uncovered(original, terrain, [&](std::size_t sample) { gone.push_back(sample); });
   return original.without(gone);
 }
 
 std::vector<Placement> Amendments::own_in_force(const Terrain& terrain) const {
   std::vector<Placement> out;
-  if (parts_.own.empty() || terrain.mesh().dimension() < 2) return out;
+  if (parts_.own.empty()) return out;
   const auto is_out = overruled(touches(), kAnyDeed);
+  const bool all_covered = !may_have_shrunk();
   const Outline outline(terrain.mesh());
   for (std::size_t i = 0; i < is_out.size(); ++i) {
     const Placement& sample = parts_.own[i].sample;
-    if (!is_out[i] && outline.covers(sample.at)) out.push_back(sample);
+    if (!is_out[i] && (all_covered || outline.covers(sample.at))) out.push_back(sample);
   }
   return out;
 }

@@ -5,17 +5,19 @@
 // - A vertex that they insert, move or give a height is a sample itself, with that height.
 // - A sample of the source is out of force from then on when it stood where they inserted, moved, removed or set a
 //   vertex, when it lies strictly inside the area whose triangles an edit made or bent, or when the terrain
-//   no longer covers it. So is a sample of people's, if it is older than that edit.
+//   no longer covers it, since an edit took vertices from its outline. So is a sample of people's, if it is older than that edit.
 // - What stands around such an area has to stay (rim()), or the surface inside would follow it.
 // - An edit that is undone has never been: what it alone put out of force is in force again, and its own samples are none.
-//   Who undoes what does not stand any more, since it was undone before, edits.
-// - What a simplification does changes no sample.
+//   Who undoes what does not stand (it was undone before, others came after, or it is not known any more) touches vertices, but
+//   no area; who undoes the undoing of an edit edits again.
+// - What a simplification does changes no sample, and its undoing changes none.
 //
 // So there is a list of the edits that stand, in their order, with the positions and triangles of each; what is in force follows
 // from it when somebody asks. On a terrain that still has all its samples as vertices no triangle holds one inside.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,6 +42,7 @@ struct Deed {
   std::uint64_t number = 1;
   std::uint64_t fingerprint = 0;  // of its change
   std::uint64_t triangles = 0;    // of its area
+  bool shrank = false;            // vertices left the outline
   friend bool operator==(const Deed&, const Deed&) = default;
 };
 
@@ -56,7 +59,7 @@ struct Touch {
 /// A vertex that a simplification took away, or gave another height.
 struct OwnSample {
   Placement sample;
-  DeedNumber maker = 0;  // the last deed that had touched the position
+  DeedNumber maker = 0;  // the last deed that had touched the position, or held it inside its area
   friend bool operator==(const OwnSample&, const OwnSample&) = default;
 };
 
@@ -97,21 +100,24 @@ class Amendments {
   /// edit, linear in what is noted.
   void take(const Terrain& after, const Change& change);
 
-  /// The samples of `original` that are in force. Requires: `original` is what the terrain was made of; the
-  /// terrain has dimension 2.
+  /// The samples of `original` that are in force. Requires: `original` is what the terrain was made of. Cost: that of copying the
+  /// mask, and of looking at what edits touched; for points linear.
   SourceSamples in_force(const SourceSamples& original, const Terrain& terrain) const;
   /// Samples in force beside the source's, by position: vertices that simplifications took away or gave another height, where there
-  /// is no source, or where people had edited. Shares no position with in_force(). None where no surface is left.
+  /// is no source, or where people had edited. Shares no position with in_force(). Cost: linear in what is noted.
   std::vector<Placement> own_in_force(const Terrain& terrain) const;
 
   friend bool operator==(const Amendments& a, const Amendments& b) { return a.parts() == b.parts(); }
 
  private:
+  Deed* take_touches(std::span<const Step> net, std::uint64_t print);
   void take_edit(const Terrain& after, const Change& change);
-  void take_undo(const Terrain& after, const Change& change);
   void take_simplification(const Terrain& after, const Change& change);
-  void forget(std::size_t deed);
+  bool forget(const Change& edit);
   void forget_names();
+  std::vector<std::optional<DeedNumber>> last_deeds(std::span<const exact::Point> positions,
+                                                    std::span<const Touch> all_touches, DeedNumber last) const;
+  bool may_have_shrunk() const;
   std::vector<bool> overruled(std::span<const Touch> all_touches, DeedNumber last) const;
   bool is_off_pixels(const Terrain& terrain, exact::Point p) const;
   std::vector<Touch> touches() const;

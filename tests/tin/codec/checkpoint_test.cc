@@ -65,7 +65,7 @@ terrain::Amendments any_amendments(Random& random, bool has_grid) {
     const auto triangles = testing::between<std::size_t>(random, 0, left);
     left -= triangles;
     parts.next_deed += testing::between<std::uint64_t>(random, 0, 200);
-    parts.deeds.push_back({parts.next_deed++, random(), triangles});
+    parts.deeds.push_back({parts.next_deed++, random(), triangles, testing::chance(random, 0.5)});
   }
   const auto any_deed = [&] {
     const auto which = testing::between<std::size_t>(random, 0, parts.deeds.size());

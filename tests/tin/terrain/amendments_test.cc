@@ -80,6 +80,7 @@ struct Followed {
   std::set<Point> touched;
   std::map<Point, double> made;  // samples
   std::set<Point> inside;        // of its area
+  bool shrank = false;           // vertices left the outline
 };
 
 /// Follows edits by the words of the rule. `nobodys` are samples that are older than all edits.
@@ -87,16 +88,20 @@ class Oracle {
  public:
   explicit Oracle(std::map<Point, double> nobodys) : nobodys_(std::move(nobodys)) {}
 
-  void edit(const Surface& before, const Surface& after, const Change& change) {
+  void edit(const Surface& before, const Surface& after, const Change& change, bool has_area = true) {
     std::map<VertexId, Step> net;
     for (const Step& step : change.steps) net.try_emplace(step.id, step).first->second.after = step.after;
-    Followed edit{change.steps, {}, {}, {}};
+    Followed edit{change.steps, {}, {}, {}, false};
     for (const auto& [id, step] : net) {
       if (step.before == step.after) continue;
       if (step.before) edit.touched.insert(step.before->at);
       if (step.after) edit.touched.insert(step.after->at);
     }
     if (edit.touched.empty()) return;
+    for (const auto& [id, step] : net) {
+      const bool left = step.before && (!step.after || step.after->at != step.before->at);
+      edit.shrank |= has_area && left && !is_covered(step.before->at, after);
+    }
     for (const auto& [id, step] : net) {
       if (step.before != step.after && step.after) edit.made[step.after->at] = step.after->z;
     }
@@ -105,23 +110,40 @@ class Oracle {
       for (const Corner& c : f) corners.insert(c.first);
     }
     for (const auto& [p, z] : nobodys_) {
-      if (lies_inside(p, corners, before, after)) edit.inside.insert(p);
+      if (has_area && lies_inside(p, edit, corners, before, after)) edit.inside.insert(p);
     }
     for (const Followed& earlier : standing_) {
       for (const auto& [p, z] : earlier.made) {
-        if (lies_inside(p, corners, before, after)) edit.inside.insert(p);
+        if (has_area && lies_inside(p, edit, corners, before, after)) edit.inside.insert(p);
       }
     }
     standing_.push_back(std::move(edit));
   }
 
-  /// Undone, if it stands; else what undoes it is an edit.
+  /// Undone, if it stands, and is the last that touched its positions; else what undoes it is an edit.
   void undo(const Surface& before, const Surface& after, const Change& change) {
     const auto steps = change.inverse().steps;
     const auto found = std::find_if(standing_.rbegin(), standing_.rend(),
                                     [&](const Followed& edit) { return edit.steps == steps; });
-    if (found == standing_.rend()) return edit(before, after, change);
+    if (found == standing_.rend()) return edit(before, after, change, false);
+    const bool is_last = std::none_of(standing_.rbegin(), found, [&](const Followed& later) {
+      return std::any_of(later.touched.begin(), later.touched.end(),
+                         [&](Point p) { return found->touched.contains(p); });
+    });
+    if (!is_last) return edit(before, after, change, false);
     standing_.erase(std::next(found).base());
+  }
+
+  /// What it takes away, or gives another height, stays a sample where there was none: since an edit had put it out of force.
+  void simplification(const Change& change) {
+    for (const Step& step : change.steps) {
+      if (!step.before) continue;
+      const Point p = step.before->at;
+      const auto last = std::find_if(standing_.rbegin(), standing_.rend(), [p](const Followed& edit) {
+        return edit.touched.contains(p) || edit.inside.contains(p);
+      });
+      if (last != standing_.rend()) last->made.emplace(p, step.before->z);
+    }
   }
 
   std::set<Point> nobodys_in_force(const Surface& now) const {
@@ -147,18 +169,27 @@ class Oracle {
     for (; next < standing_.size(); ++next) {
       if (standing_[next].touched.contains(p) || standing_[next].inside.contains(p)) return false;
     }
+    const auto shrank = [](const Followed& edit) { return edit.shrank; };
+    return std::none_of(standing_.begin(), standing_.end(), shrank) || is_covered(p, now);
+  }
+
+  static bool is_covered(Point p, const Surface& now) {
     return std::any_of(now.facets.begin(), now.facets.end(), [p](const Facet& f) { return holds(f, p); });
   }
 
-  static bool lies_inside(Point p, const std::set<Point>& corners, const Surface& before, const Surface& after) {
+  /// In the inside of what is otherwise than before, or has a corner that was made.
+  static bool lies_inside(Point p, const Followed& edit, const std::set<Point>& corners, const Surface& before,
+                          const Surface& after) {
+    const auto is_made = [&](const Corner& c) { return edit.made.contains(c.first); };
     bool covered = false;
     for (const Facet& f : after.facets) {
       if (!holds(f, p)) continue;
-      if (corners.contains(p) || before.facets.contains(f)) return false;
+      const bool is_old = before.facets.contains(f) && std::none_of(f.begin(), f.end(), is_made);
+      if (corners.contains(p) || is_old) return false;
       covered = true;
     }
     return covered && std::none_of(after.borders.begin(), after.borders.end(), [&](const Border& b) {
-             return holds(b, p) && before.borders.contains(b);
+             return holds(b, p) && before.borders.contains(b) && std::none_of(b.begin(), b.end(), is_made);
            });
   }
 
@@ -360,6 +391,7 @@ class Story {
     const Surface after(*terrain_);
     if (change.cause == Cause::kEdit) oracle_->edit(before, after, change);
     if (change.cause == Cause::kUndo) oracle_->undo(before, after, change);
+    if (change.cause == Cause::kSimplification || change.cause == Cause::kRevert) oracle_->simplification(change);
     undone_ += change.cause == Cause::kUndo ? 1 : 0;
   }
 
@@ -374,10 +406,10 @@ class Story {
 /// Edits, simplifications, and the undoing of any of them, and of any undoing, once or again.
 TEST(AmendmentsTest, WhatIsInForceFollowsFromTheEditsThatStand) {
   int undone = 0;
-  for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 400; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Story story(seed);
-    for (int round = 0; round < 16; ++round) {
+    for (int round = 0; round < 30; ++round) {
       story.go_on();
       ASSERT_NO_FATAL_FAILURE(story.expect_right());
     }
