@@ -229,7 +229,7 @@ void Amendments::take_edit(const Terrain& after, const Change& change) {
   deed->shrank = has_shrunk(after, net);
 }
 
-/// The older half of the deeds will not be known again: so long after, their undoing is an edit.
+/// The older half of the deeds will not be known again: so long after, their undoing touches vertices, and no more.
 void Amendments::forget_names() {
   auto& [kind, thinned, next_deed, deeds, all_touches, areas, own] = parts_;
   all_touches = touches();
@@ -253,8 +253,9 @@ void Amendments::forget_names() {
 }
 
 /// Of each position, the last deed up to `last` that touched it or holds it strictly inside its area. Requires: the touches ascend.
-std::vector<std::optional<DeedNumber>> Amendments::last_deeds(std::span<const Point> positions, std::span<const Touch> all_touches,
-                                               DeedNumber last) const {
+std::vector<std::optional<DeedNumber>> Amendments::last_deeds(std::span<const Point> positions,
+                                                              std::span<const Touch> all_touches,
+                                                              DeedNumber last) const {
   std::vector<std::optional<DeedNumber>> out(positions.size());
   if (!parts_.areas.empty()) {
     PositionBuckets buckets(positions.size(), [&](std::size_t i) { return positions[i]; });
