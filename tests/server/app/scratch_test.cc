@@ -62,7 +62,8 @@ TEST_F(ScratchMemoryTest, HalfOfTheLimitIsInMemoryAndTheRestInFilesWithoutNames)
 TEST_F(ScratchMemoryTest, WhatIsLetGoOfKeepsItsContents) {
   constexpr std::size_t kCount = 32 << 20, kLimit = 16 << 20, kOvershoot = 48 << 20;
   ScratchMemory scratch({kLimit, folder_});
-  const std::size_t anonymous = status("RssAnon"), of_files = status("RssFile");
+  [[maybe_unused]] const std::size_t anonymous = status("RssAnon");
+  const std::size_t of_files = status("RssFile");
   tin::base::Array<std::uint32_t> numbers(kCount, &scratch);
   EXPECT_EQ(scratch.in_files(), kCount * sizeof(std::uint32_t));
   std::iota(numbers.begin(), numbers.end(), 7U);
